@@ -1,0 +1,101 @@
+//! The same task in different variables.
+
+use std::sync::Arc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Boxes, Bounds, Evaluation, Problem, Reorientation};
+
+/// The variables in which an optimiser sees the task.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Formulation {
+    /// The paper's: `α_6` of all joints, `α_7` of all joints, …, `t_f`. Badly scaled.
+    Raw,
+    /// Bump coefficients, joint by joint, and `t_f`.
+    Scaled,
+    /// Bump coefficients alone; `t_f` is the shortest within the limits, so nothing is penalised.
+    TimeFree,
+}
+
+impl Formulation {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Raw, Self::Scaled, Self::TimeFree];
+
+    /// The name used in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Raw => "raw",
+            Self::Scaled => "scaled",
+            Self::TimeFree => "time-free",
+        }
+    }
+}
+
+/// The reorientation task in one of its formulations.
+#[derive(Debug, Clone)]
+pub struct Formulated {
+    formulation: Formulation,
+    task: Arc<Reorientation>,
+    bounds: Bounds,
+}
+
+impl Formulated {
+    /// The task in these variables, within these boxes.
+    pub fn new(formulation: Formulation, task: Arc<Reorientation>, boxes: &Boxes) -> Self {
+        let family = task.family();
+        let mut pairs: Vec<[f64; 2]> = match formulation {
+            Formulation::Raw => {
+                boxes.alpha.iter().flat_map(|&a| vec![[-a, a]; family.joints()]).collect()
+            }
+            Formulation::Scaled | Formulation::TimeFree => {
+                let joint: Vec<_> = boxes.coefficient.iter().map(|&c| [-c, c]).collect();
+                joint.repeat(family.joints())
+            }
+        };
+        if formulation != Formulation::TimeFree {
+            pairs.push(boxes.duration);
+        }
+        Self { formulation, task, bounds: Bounds::new(pairs) }
+    }
+
+    /// The task behind the formulation.
+    pub fn task(&self) -> &Reorientation {
+        &self.task
+    }
+
+    /// Coefficients and, where it is a variable, duration \[s\] of a point.
+    pub fn decode(&self, x: &[f64]) -> (Vec<f64>, Option<f64>) {
+        let (shape, duration) = x.split_at(self.task.family().dimension());
+        let duration = duration.first().copied();
+        match (self.formulation, duration) {
+            (Formulation::Raw, Some(t)) => (self.task.family().from_alpha(shape, t), duration),
+            _ => (shape.to_vec(), duration),
+        }
+    }
+
+    /// The point that stands for a motion; its duration is left out where it is no variable.
+    pub fn encode(&self, coefficients: &[f64], duration: f64) -> Vec<f64> {
+        let mut x = match self.formulation {
+            Formulation::Raw => self.task.family().to_alpha(coefficients, duration),
+            Formulation::Scaled | Formulation::TimeFree => coefficients.to_vec(),
+        };
+        if self.formulation != Formulation::TimeFree {
+            x.push(duration);
+        }
+        x
+    }
+}
+
+impl Problem for Formulated {
+    fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Evaluation {
+        let (coefficients, duration) = self.decode(x);
+        let assessment = self.task.assess(&coefficients, duration);
+        Evaluation { cost: assessment.cost, violation: assessment.excess.iter().sum() }
+    }
+}

@@ -1,0 +1,118 @@
+//! What an optimiser sees: a box and a cost.
+
+mod formulation;
+mod published;
+mod reorientation;
+mod settings;
+
+pub use formulation::{Formulation, Formulated};
+pub use published::{Published, Reading, ReplayFile};
+pub use reorientation::{Accuracy, Assessment, Reorientation};
+pub use settings::{Boxes, TaskFile, TrajectoryTable};
+
+/// A box-bounded minimisation problem.
+pub trait Problem: Sync {
+    /// The box; its length is the problem's dimension.
+    fn bounds(&self) -> &Bounds;
+
+    /// The cost of one point of the box.
+    fn evaluate(&self, x: &[f64]) -> Evaluation;
+
+    /// The cost of many points; `out` has one place for each.
+    fn evaluate_batch(&self, points: &Points, out: &mut [Evaluation]) {
+        for (x, evaluation) in points.iter().zip(out) {
+            *evaluation = self.evaluate(x);
+        }
+    }
+}
+
+/// What one evaluation says.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Evaluation {
+    /// The cost to be made small.
+    pub cost: f64,
+    /// How far outside its limits the point is, zero when inside.
+    pub violation: f64,
+}
+
+/// Lower and upper bound of every variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounds(Vec<[f64; 2]>);
+
+impl Bounds {
+    /// From `[lower, upper]` pairs.
+    pub fn new(pairs: Vec<[f64; 2]>) -> Self {
+        Self(pairs)
+    }
+
+    /// The number of variables.
+    #[expect(clippy::len_without_is_empty, reason = "a problem has variables")]
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The pairs, in the order of the variables.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
+        self.0.iter().copied()
+    }
+
+    /// Whether every variable is within its bounds.
+    pub fn contains(&self, x: &[f64]) -> bool {
+        x.len() == self.len() && self.0.iter().zip(x).all(|([l, u], x)| (l..=u).contains(&x))
+    }
+}
+
+/// Points of one dimension, one after the other.
+#[derive(Debug, Clone)]
+pub struct Points {
+    dimension: usize,
+    values: Vec<f64>,
+}
+
+impl Points {
+    /// `count` points at the origin.
+    pub fn zeros(dimension: usize, count: usize) -> Self {
+        Self { dimension, values: vec![0.0; dimension * count] }
+    }
+
+    /// The number of points.
+    pub fn len(&self) -> usize {
+        self.values.len() / self.dimension
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// The points, in order.
+    pub fn iter(&self) -> std::slice::ChunksExact<'_, f64> {
+        self.values.chunks_exact(self.dimension)
+    }
+
+    /// The points, in order, to write to.
+    pub fn iter_mut(&mut self) -> std::slice::ChunksExactMut<'_, f64> {
+        self.values.chunks_exact_mut(self.dimension)
+    }
+
+    /// The first `count` points.
+    #[must_use]
+    pub fn first(&self, count: usize) -> Self {
+        let values = self.values[..self.dimension * count].to_vec();
+        Self { dimension: self.dimension, values }
+    }
+}
+
+impl std::ops::Index<usize> for Points {
+    type Output = [f64];
+
+    fn index(&self, i: usize) -> &[f64] {
+        &self.values[i * self.dimension..(i + 1) * self.dimension]
+    }
+}
+
+impl std::ops::IndexMut<usize> for Points {
+    fn index_mut(&mut self, i: usize) -> &mut [f64] {
+        &mut self.values[i * self.dimension..(i + 1) * self.dimension]
+    }
+}

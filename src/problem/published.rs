@@ -1,0 +1,249 @@
+//! Replaying a given motion, also the way the paper's own numbers seem to have been made.
+
+use std::sync::Arc;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::reorientation::{attitude_error, cost};
+use super::settings::DEFAULTS;
+use super::{Accuracy, Assessment, Reorientation, TrajectoryTable};
+use crate::input::{Document, InputError, finite, finite_list, positive};
+use crate::momentum::base_twist;
+use crate::task::{Posture, Task, TaskTable};
+use crate::trajectory::{Path, Peaks};
+
+/// How a published motion is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reading {
+    /// The physics that the equations state.
+    Physics,
+    /// What reproduces the paper's `J*`: the base's rotation matrix transposed where eq. 9 takes the
+    /// angular velocity into the inertial frame, start angles composed roll first, limits looked at
+    /// every 10 ms only. That the authors did so is inferred from the numbers, not known.
+    AsPublished,
+}
+
+impl Reading {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Physics, Self::AsPublished];
+
+    /// The name used in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Physics => "physics",
+            Self::AsPublished => "as-published",
+        }
+    }
+}
+
+/// A file with one motion to replay.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReplayFile {
+    task: TaskTable,
+    trajectory: TrajectoryTable,
+    motion: Spanned<MotionTable>,
+}
+
+/// The `[motion]` table: `alpha6` and `alpha7`, or `coefficients`.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MotionTable {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    alpha6: Option<Spanned<Numbers>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    alpha7: Option<Spanned<Numbers>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    coefficients: Option<Spanned<Vec<Numbers>>>,
+    t_f: Spanned<Seconds>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    j: Option<Claim>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Numbers(#[serde(deserialize_with = "finite_list")] Vec<f64>);
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Seconds(#[serde(deserialize_with = "positive")] f64);
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Claim(#[serde(deserialize_with = "finite")] f64);
+
+/// A motion to replay and what was claimed of it.
+#[derive(Debug, Clone)]
+pub struct Published {
+    /// The task it is for, over a family with as many terms as the motion has.
+    pub problem: Reorientation,
+    /// Bump coefficients, joint by joint.
+    pub coefficients: Vec<f64>,
+    /// Duration \[s\].
+    pub duration: f64,
+    /// The cost claimed.
+    pub cost: Option<f64>,
+}
+
+/// Step of the time grid on which the as-published reading looks at the limits \[s\].
+const SAMPLE_STEP: f64 = 0.01;
+
+/// Longest motion to replay \[s\]: more samples than a million say nothing new.
+const LONGEST: f64 = 10_000.0;
+
+/// Runge–Kutta steps of the as-published reading.
+const RUNGE_KUTTA_STEPS: usize = 2000;
+
+impl ReplayFile {
+    /// Reads a file; the task it leaves out is the paper's.
+    pub fn read(document: &Document) -> Result<Self, InputError> {
+        document.parse_over(&[DEFAULTS])
+    }
+
+    /// The motion published in the paper.
+    pub fn paper() -> Document {
+        Document::embedded("published.toml", include_str!("published.toml"))
+    }
+
+    /// The motion and its task.
+    pub fn build(&self, document: &Document) -> Result<Published, InputError> {
+        let task = Arc::new(self.task.build(document)?);
+        let motion = self.motion.get_ref();
+        let duration = motion.t_f.get_ref().0;
+        if duration > LONGEST {
+            let message = format!("found {duration} s, expected at most {LONGEST} s");
+            return Err(document.error_at(motion.t_f.span(), message, None));
+        }
+        let shape = self.shape(task.robot.joint_count(), document)?;
+        let terms = match &shape {
+            Shape::Alpha(_) => 2,
+            Shape::Coefficients(rows) => rows[0].0.len(),
+        };
+        let (problem, _) = self.trajectory.with_terms(terms).build(task, document)?;
+        let coefficients = match shape {
+            Shape::Alpha(alpha) => problem.family().from_alpha(&alpha, duration),
+            Shape::Coefficients(rows) => rows.iter().flat_map(|row| row.0.clone()).collect(),
+        };
+        Ok(Published {
+            coefficients,
+            problem: problem.with_accuracy(Accuracy::FINE),
+            duration,
+            cost: motion.j.map(|claim| claim.0),
+        })
+    }
+
+    /// The shape as given, with as many values as the robot has joints.
+    fn shape(&self, joints: usize, document: &Document) -> Result<Shape<'_>, InputError> {
+        let motion = self.motion.get_ref();
+        let error = |span, message: String| Err(document.error_at(span, message, None));
+        match (&motion.alpha6, &motion.alpha7, &motion.coefficients) {
+            (Some(alpha6), Some(alpha7), None) => {
+                for list in [alpha6, alpha7] {
+                    let found = list.get_ref().0.len();
+                    if found != joints {
+                        let message = format!("found {found} values, expected {joints}, one a joint");
+                        return error(list.span(), message);
+                    }
+                }
+                Ok(Shape::Alpha([&alpha6.get_ref().0[..], &alpha7.get_ref().0].concat()))
+            }
+            (None, None, Some(list)) => {
+                let rows = list.get_ref();
+                let terms = rows.first().map_or(0, |row| row.0.len());
+                if terms == 0 || rows.len() != joints || rows.iter().any(|r| r.0.len() != terms) {
+                    let message =
+                        format!("expected {joints} rows, one a joint, of equally many coefficients");
+                    return error(list.span(), message);
+                }
+                Ok(Shape::Coefficients(rows))
+            }
+            _ => error(
+                self.motion.span(),
+                "expected either `alpha6` and `alpha7`, or `coefficients`".to_owned(),
+            ),
+        }
+    }
+}
+
+/// The two ways to write a shape down.
+enum Shape<'a> {
+    /// `α_6` of all joints, then `α_7`.
+    Alpha(Vec<f64>),
+    /// One row a joint.
+    Coefficients(&'a [Numbers]),
+}
+
+impl Published {
+    /// The motion under a reading.
+    pub fn assess(&self, reading: Reading) -> Assessment {
+        match reading {
+            Reading::Physics => self.problem.assess(&self.coefficients, Some(self.duration)),
+            Reading::AsPublished => self.assess_as_published(),
+        }
+    }
+
+    fn assess_as_published(&self) -> Assessment {
+        let task = self.problem.task();
+        let path = self.problem.family().path(&self.coefficients);
+        let end = transposed_attitude(task, &path, roll_first(&task.start));
+        let peaks = sampled_peaks(&path, self.duration);
+        let excess = peaks.excess(&task.limits);
+        let attitude_error = attitude_error(&roll_first(&task.goal), &end);
+        Assessment {
+            cost: cost(task.base_weight, attitude_error, self.duration, &excess),
+            attitude_error,
+            duration: self.duration,
+            excess,
+            peaks,
+        }
+    }
+}
+
+/// The same ZYX angles composed in the other order, `Rx Ry Rz`.
+fn roll_first(posture: &Posture) -> UnitQuaternion<f64> {
+    let (roll, pitch, yaw) = posture.base.euler_angles();
+    let about = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
+    about(Vector3::x_axis(), roll) * about(Vector3::y_axis(), pitch) * about(Vector3::z_axis(), yaw)
+}
+
+/// Eq. 9 driven with `R(Q)ᵀ ω_b`: classical Runge–Kutta in `τ`.
+fn transposed_attitude(
+    task: &Task,
+    path: &Path<'_, f64>,
+    start: UnitQuaternion<f64>,
+) -> UnitQuaternion<f64> {
+    let width = 1.0 / RUNGE_KUTTA_STEPS as f64;
+    let mut angles = vec![0.0; task.robot.joint_count()];
+    let mut rates = angles.clone();
+    let mut base_rate = |tau: f64| {
+        path.angles_and_rates(tau, &mut angles, &mut rates);
+        base_twist(&task.robot, &angles, &rates).angular
+    };
+    let slope = |q: Quaternion<f64>, omega: Vector3<f64>| {
+        let inertial = UnitQuaternion::new_normalize(q).inverse() * omega;
+        Quaternion::from_imag(inertial * 0.5) * q
+    };
+    let mut q = start.into_inner();
+    for i in 0..RUNGE_KUTTA_STEPS {
+        let tau = i as f64 * width;
+        let rates = [tau, tau + width / 2.0, tau + width].map(&mut base_rate);
+        let k1 = slope(q, rates[0]);
+        let k2 = slope(q + k1 * (width / 2.0), rates[1]);
+        let k3 = slope(q + k2 * (width / 2.0), rates[1]);
+        let k4 = slope(q + k3 * width, rates[2]);
+        q += (k1 + k2 * 2.0 + k3 * 2.0 + k4) * (width / 6.0);
+    }
+    UnitQuaternion::new_normalize(q)
+}
+
+/// The largest values on a grid from zero that stops short of the end \[rad/s, rad/s², rad/s³\].
+fn sampled_peaks(path: &Path<'_, f64>, duration: f64) -> Peaks {
+    let last = (duration / SAMPLE_STEP).floor() as usize;
+    let peaks = path.joints().map(|joint| {
+        (0..=last).fold([0.0; 3], |peak: [f64; 3], i| {
+            let sample = joint.derivatives(i as f64 * SAMPLE_STEP / duration);
+            std::array::from_fn(|k| peak[k].max(sample[k + 1].abs()))
+        })
+    });
+    Peaks(peaks.collect()).over(duration)
+}

@@ -1,0 +1,168 @@
+//! Reading a robot file, and the robots that come with the program.
+
+use nalgebra::{Cholesky, Matrix3, Rotation3, Vector3};
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Body, DhRow, Joint, Robot};
+use crate::input::{Document, InputError, finite, finite_array, interval, positive};
+
+/// The robots that come with the program: name and file.
+const EMBEDDED: &[(&str, &str)] = &[("xiao2023", include_str!("xiao2023.toml"))];
+
+impl Robot {
+    /// The names of the robots that come with the program.
+    pub fn embedded_names() -> impl Iterator<Item = &'static str> {
+        EMBEDDED.iter().map(|(name, _)| *name)
+    }
+
+    /// The file of a robot that comes with the program.
+    pub fn embedded(name: &str) -> Option<Document> {
+        let (name, text) = EMBEDDED.iter().find(|(known, _)| *known == name)?;
+        Some(Document::embedded(&format!("{name}.toml"), text))
+    }
+
+    /// Reads a robot.
+    pub fn from_document(document: &Document) -> Result<Self, InputError> {
+        let file: RobotFile = document.parse()?;
+        if file.joint.get_ref().is_empty() {
+            let message = "found no joint, expected at least one";
+            return Err(document.error_at(file.joint.span(), message, None));
+        }
+        Ok(file.into())
+    }
+}
+
+/// Lengths in metres, masses in kilograms, inertias in kg m².
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RobotFile {
+    name: String,
+    base: BaseTable,
+    joint: Spanned<Vec<JointTable>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BaseTable {
+    #[serde(deserialize_with = "positive")]
+    mass: f64,
+    inertia: Inertia,
+    #[serde(deserialize_with = "finite_array")]
+    mount: [f64; 3],
+    #[serde(default, deserialize_with = "finite_array")]
+    mount_zyx_deg: [f64; 3],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JointTable {
+    name: Option<String>,
+    dh: DhTable,
+    #[serde(deserialize_with = "interval")]
+    range_deg: [f64; 2],
+    #[serde(deserialize_with = "positive")]
+    mass: f64,
+    #[serde(deserialize_with = "finite_array")]
+    centre_of_mass: [f64; 3],
+    inertia: Inertia,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DhTable {
+    #[serde(default, deserialize_with = "finite")]
+    offset_deg: f64,
+    #[serde(deserialize_with = "finite")]
+    d: f64,
+    #[serde(deserialize_with = "finite")]
+    a: f64,
+    #[serde(deserialize_with = "finite")]
+    alpha_deg: f64,
+}
+
+/// A symmetric matrix that is known to be positive definite.
+#[derive(Deserialize)]
+#[serde(try_from = "InertiaTable")]
+struct Inertia(Matrix3<f64>);
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct InertiaTable {
+    #[serde(deserialize_with = "finite")]
+    xx: f64,
+    #[serde(deserialize_with = "finite")]
+    yy: f64,
+    #[serde(deserialize_with = "finite")]
+    zz: f64,
+    #[serde(default, deserialize_with = "finite")]
+    xy: f64,
+    #[serde(default, deserialize_with = "finite")]
+    xz: f64,
+    #[serde(default, deserialize_with = "finite")]
+    yz: f64,
+}
+
+impl TryFrom<InertiaTable> for Inertia {
+    type Error = &'static str;
+
+    fn try_from(t: InertiaTable) -> Result<Self, Self::Error> {
+        let matrix = Matrix3::new(t.xx, t.xy, t.xz, t.xy, t.yy, t.yz, t.xz, t.yz, t.zz);
+        match Cholesky::new(matrix) {
+            Some(_) => Ok(Self(matrix)),
+            None => Err("the inertia is not positive definite"),
+        }
+    }
+}
+
+impl From<RobotFile> for Robot {
+    fn from(file: RobotFile) -> Self {
+        let [yaw, pitch, roll] = file.base.mount_zyx_deg.map(f64::to_radians);
+        Self {
+            name: file.name,
+            base: Body { mass: file.base.mass, inertia: file.base.inertia.0 },
+            mount: file.base.mount.into(),
+            mount_rotation: Rotation3::from_euler_angles(roll, pitch, yaw),
+            joints: file.joint.into_inner().into_iter().enumerate().map(|(i, j)| j.numbered(i + 1)).collect(),
+        }
+    }
+}
+
+impl JointTable {
+    fn numbered(self, number: usize) -> Joint {
+        Joint {
+            name: self.name.unwrap_or_else(|| format!("joint{number}")),
+            dh: DhRow::new(
+                self.dh.offset_deg.to_radians(),
+                self.dh.d,
+                self.dh.a,
+                self.dh.alpha_deg.to_radians(),
+            ),
+            range: self.range_deg.map(f64::to_radians),
+            link: Body { mass: self.mass, inertia: self.inertia.0 },
+            centre_of_mass: Vector3::from(self.centre_of_mass),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn paper() -> Robot {
+        Robot::from_document(&Robot::embedded("xiao2023").unwrap()).unwrap()
+    }
+
+    /// Table 2's `a_i + b_i` reproduces Table 1's rows; link 4 is the telling one.
+    #[test]
+    fn the_step_between_joints_is_a_plus_b() {
+        let step = paper().joints[3].dh.step;
+        assert!((step - Vector3::new(0.0, -0.425 - 0.45, 0.13 + 0.11)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn warns_of_links_three_and_four() {
+        let warning = paper().warning().unwrap();
+        assert!(warning.contains("joint3 and of the link of joint4 breaks"), "{warning}");
+    }
+}

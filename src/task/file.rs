@@ -1,0 +1,135 @@
+//! The `[task]` table.
+
+use std::sync::Arc;
+
+use nalgebra::UnitQuaternion;
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::{Posture, Task};
+use crate::input::{Document, InputError, PerJoint, finite_array, finite_list, fraction, nearest};
+use crate::robot::Robot;
+use crate::trajectory::Limits;
+
+/// The `[task]` table.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TaskTable {
+    robot: Spanned<String>,
+    start: PostureTable,
+    goal: PostureTable,
+    limits: LimitsTable,
+    weights: WeightsTable,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PostureTable {
+    joints_deg: Spanned<Angles>,
+    #[serde(deserialize_with = "finite_array")]
+    base_zyx_deg: [f64; 3],
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Angles(#[serde(deserialize_with = "finite_list")] Vec<f64>);
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LimitsTable {
+    rate_deg_s: Spanned<PerJoint>,
+    acceleration_deg_s2: Spanned<PerJoint>,
+    jerk_deg_s3: Spanned<PerJoint>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WeightsTable {
+    #[serde(deserialize_with = "fraction")]
+    base: f64,
+}
+
+impl TaskTable {
+    /// The task. A robot that does not come with the program is a file, sought beside `document`.
+    pub fn build(&self, document: &Document) -> Result<Task, InputError> {
+        let robot = find_robot(&self.robot, document)?;
+        let reader = Reader { document, robot: &robot };
+        let [rate, acceleration, jerk] = [
+            reader.limit(&self.limits.rate_deg_s)?,
+            reader.limit(&self.limits.acceleration_deg_s2)?,
+            reader.limit(&self.limits.jerk_deg_s3)?,
+        ];
+        let limits = (0..robot.joint_count()).map(|i| [rate[i], acceleration[i], jerk[i]]);
+        Ok(Task {
+            start: reader.posture(&self.start)?,
+            goal: reader.posture(&self.goal)?,
+            limits: Limits(limits.collect()),
+            base_weight: self.weights.base,
+            robot: Arc::new(robot),
+        })
+    }
+}
+
+fn find_robot(name: &Spanned<String>, document: &Document) -> Result<Robot, InputError> {
+    let known = name.get_ref();
+    if let Some(embedded) = Robot::embedded(known) {
+        return Robot::from_document(&embedded);
+    }
+    let path = document.resolve(known);
+    if path.exists() {
+        return Robot::from_document(&Document::read(&path)?);
+    }
+    let message = format!(
+        "no robot `{known}`: neither one that comes with the program nor a file at {}",
+        path.display()
+    );
+    let help = nearest(known, Robot::embedded_names()).map(|n| format!("did you mean `{n}`?"));
+    Err(document.error_at(name.span(), message, help))
+}
+
+/// Reads what is listed joint by joint, in degrees, into radians.
+struct Reader<'a> {
+    document: &'a Document,
+    robot: &'a Robot,
+}
+
+impl Reader<'_> {
+    fn posture(&self, table: &PostureTable) -> Result<Posture, InputError> {
+        let angles = &table.joints_deg.get_ref().0;
+        self.check_length(&table.joints_deg, angles.len())?;
+        for (joint, angle) in self.robot.joints.iter().zip(angles) {
+            let [lower, upper] = joint.range.map(f64::to_degrees);
+            // A hair's breadth for the rounding of degrees to radians and back.
+            if !(lower - 1e-9..=upper + 1e-9).contains(angle) {
+                let message =
+                    format!("{angle}° is out of the range {lower}° to {upper}° of {}", joint.name);
+                return Err(self.document.error_at(table.joints_deg.span(), message, None));
+            }
+        }
+        let [yaw, pitch, roll] = table.base_zyx_deg.map(f64::to_radians);
+        Ok(Posture {
+            joints: angles.iter().map(|a| a.to_radians()).collect(),
+            base: UnitQuaternion::from_euler_angles(roll, pitch, yaw),
+        })
+    }
+
+    fn limit(&self, limit: &Spanned<PerJoint>) -> Result<Vec<f64>, InputError> {
+        let values = match limit.get_ref() {
+            PerJoint::All(value) => vec![*value; self.robot.joint_count()],
+            PerJoint::Each(values) => values.clone(),
+        };
+        self.check_length(limit, values.len())?;
+        Ok(values.into_iter().map(f64::to_radians).collect())
+    }
+
+    fn check_length<T>(&self, list: &Spanned<T>, found: usize) -> Result<(), InputError> {
+        let expected = self.robot.joint_count();
+        if found == expected {
+            return Ok(());
+        }
+        let message = format!(
+            "found {found} values, expected {expected}, one for each joint of robot `{}`",
+            self.robot.name
+        );
+        Err(self.document.error_at(list.span(), message, None))
+    }
+}

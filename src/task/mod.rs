@@ -1,0 +1,36 @@
+//! What is to be done: from where to where, within which limits, weighed how.
+
+mod file;
+
+use std::sync::Arc;
+
+use nalgebra::UnitQuaternion;
+use serde::Serialize;
+
+use crate::robot::Robot;
+use crate::trajectory::Limits;
+pub use file::TaskTable;
+
+/// A rest-to-rest motion of the arm that is also to turn the base.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// The robot.
+    pub robot: Arc<Robot>,
+    /// Where the motion starts.
+    pub start: Posture,
+    /// Where it is to end.
+    pub goal: Posture,
+    /// What each joint may do.
+    pub limits: Limits,
+    /// `K_b`, the weight of the base's attitude; time weighs `K_t = 1 − K_b`.
+    pub base_weight: f64,
+}
+
+/// Joint angles and base attitude, at rest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Posture {
+    /// Joint angles \[rad\].
+    pub joints: Vec<f64>,
+    /// Turns base axes into inertial axes.
+    pub base: UnitQuaternion<f64>,
+}

@@ -1,0 +1,90 @@
+//! All paths of the sine-polynomial family between two configurations.
+
+use super::basis::Basis;
+use super::path::{Path, Span};
+use crate::scalar::Scalar;
+
+/// `(15x − 10x³ + 3x⁵)/16 + 1/2`: the phase that goes from 0 to 1 and rests at both ends to the
+/// second derivative, in powers of `x = 2τ − 1`.
+const STEP: [f64; 6] = [0.5, 15.0 / 16.0, 0.0, -10.0 / 16.0, 0.0, 3.0 / 16.0];
+
+/// All paths of the family between two configurations.
+///
+/// `s = s_0 + (s_f − s_0) σ(τ) + 64 τ³(1−τ)³ Σ_k c_k P_k(2τ−1)`; the coefficients `c` select one.
+/// They are ordered joint by joint, `terms` for each.
+#[derive(Debug, Clone)]
+pub struct Family {
+    spans: Vec<Span>,
+    basis: Basis,
+}
+
+impl Family {
+    /// From the joints' ranges and both configurations \[rad\], each start and goal in its range.
+    pub fn new(ranges: &[[f64; 2]], start: &[f64], goal: &[f64], terms: usize) -> Self {
+        let spans = ranges
+            .iter()
+            .zip(start.iter().zip(goal))
+            .map(|(range, (&start, &goal))| Span::new(*range, start, goal))
+            .collect();
+        Self { spans, basis: Basis::new(terms) }
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.spans.len()
+    }
+
+    /// Free coefficients a joint.
+    pub fn terms(&self) -> usize {
+        self.basis.terms()
+    }
+
+    /// Free coefficients in all.
+    pub fn dimension(&self) -> usize {
+        self.joints() * self.terms()
+    }
+
+    /// The path with these coefficients.
+    pub fn path<T: Scalar>(&self, coefficients: &[T]) -> Path<'_, T> {
+        debug_assert_eq!(coefficients.len(), self.dimension());
+        let length = 6 + self.terms();
+        let mut phases = vec![T::zero(); self.joints() * length];
+        let rows = phases.chunks_exact_mut(length).zip(coefficients.chunks_exact(self.terms()));
+        for (span, (phase, coefficients)) in self.spans.iter().zip(rows) {
+            for (power, &c) in phase.iter_mut().zip(&STEP) {
+                *power = T::of(c * span.phase_change);
+            }
+            phase[0] += T::of(span.start_phase);
+            for (bump, &coefficient) in self.basis.bumps().iter().zip(coefficients) {
+                for (power, &b) in phase.iter_mut().zip(bump) {
+                    *power += coefficient * T::of(b);
+                }
+            }
+        }
+        Path::new(&self.spans, phases)
+    }
+
+    /// The paper's `α_6 … , α_7 …, …` \[s⁻⁶, s⁻⁷, …\], one block a power, one value a joint.
+    pub fn to_alpha(&self, coefficients: &[f64], duration: f64) -> Vec<f64> {
+        let mut alpha = vec![0.0; self.dimension()];
+        for (i, joint) in coefficients.chunks_exact(self.terms()).enumerate() {
+            for (k, power) in self.basis.to_powers(joint).into_iter().enumerate() {
+                alpha[k * self.joints() + i] = power / duration.powi(6 + k as i32);
+            }
+        }
+        alpha
+    }
+
+    /// The coefficients of a path given by the paper's `α` and duration \[s\].
+    pub fn from_alpha(&self, alpha: &[f64], duration: f64) -> Vec<f64> {
+        debug_assert_eq!(alpha.len(), self.dimension());
+        (0..self.joints())
+            .flat_map(|i| {
+                let powers: Vec<f64> = (0..self.terms())
+                    .map(|k| alpha[k * self.joints() + i] * duration.powi(6 + k as i32))
+                    .collect();
+                self.basis.from_powers(&powers)
+            })
+            .collect()
+    }
+}

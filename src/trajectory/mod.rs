@@ -1,0 +1,15 @@
+//! Joint paths `θ = Δ₁ sin s + Δ₂` with a polynomial phase `s` (eqs. 11–15, 24), in normalised time
+//! `τ = t / t_f`.
+//!
+//! The shape of a path is free of timing: rates scale with `1/t_f`, accelerations with `1/t_f²`,
+//! jerks with `1/t_f³`.
+
+mod basis;
+mod family;
+mod path;
+mod peaks;
+
+pub use basis::Basis;
+pub use family::Family;
+pub use path::{JointPath, Path};
+pub use peaks::{Limits, Peaks};

@@ -1,0 +1,110 @@
+//! The largest rate, acceleration and jerk over continuous time, and the duration they allow.
+
+use super::path::{JointPath, Path};
+
+/// Largest `|θ'|`, `|θ''|`, `|θ'''|` of each joint over the whole path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Peaks(pub Vec<[f64; 3]>);
+
+/// The most each joint may do: rate \[rad/s\], acceleration \[rad/s²\], jerk \[rad/s³\]
+/// (eqs. 30–32).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits(pub Vec<[f64; 3]>);
+
+/// A joint's angle and first four derivatives at one time.
+type Sample = [f64; 5];
+
+impl Peaks {
+    /// The peaks of a path in normalised time \[rad\].
+    ///
+    /// The path is sampled at the ends of equal intervals; where the slope changes sign within one
+    /// and the tangents leave room for a peak above all samples, the peak itself is found. Both ends
+    /// of the path count: a jerk is often largest there.
+    pub fn of(path: &Path<'_, f64>, intervals: usize) -> Self {
+        let width = 1.0 / intervals as f64;
+        let mut samples = Vec::with_capacity(intervals + 1);
+        let peaks = path.joints().map(|joint| {
+            samples.clear();
+            samples.extend((0..=intervals).map(|i| joint.derivatives(i as f64 * width)));
+            [1, 2, 3].map(|order| peak(&joint, order, &samples, width))
+        });
+        Self(peaks.collect())
+    }
+
+    /// The same path's peaks when it lasts `duration` seconds \[rad/s, rad/s², rad/s³\].
+    #[must_use]
+    pub fn over(&self, duration: f64) -> Self {
+        let scale = [1, 2, 3].map(|order| duration.powi(order));
+        Self(self.0.iter().map(|peak| std::array::from_fn(|k| peak[k] / scale[k])).collect())
+    }
+
+    /// The shortest duration within the limits, in closed form \[s\]:
+    /// `max(max|θ'|/v̄, √(max|θ''|/ā), ∛(max|θ'''|/j̄))`.
+    pub fn shortest_duration(&self, limits: &Limits) -> f64 {
+        let [rate, acceleration, jerk] = self.largest_ratio(limits);
+        rate.max(acceleration.sqrt()).max(jerk.cbrt())
+    }
+
+    /// `F` of eqs. 26–28: the largest relative excess over the joints, zero when inside.
+    pub fn excess(&self, limits: &Limits) -> [f64; 3] {
+        self.largest_ratio(limits).map(|ratio| (ratio - 1.0).max(0.0))
+    }
+
+    fn largest_ratio(&self, limits: &Limits) -> [f64; 3] {
+        let mut largest = [0.0; 3];
+        for (peak, limit) in self.0.iter().zip(&limits.0) {
+            for k in 0..3 {
+                largest[k] = f64::max(largest[k], peak[k] / limit[k]);
+            }
+        }
+        largest
+    }
+}
+
+/// The largest absolute value of one derivative.
+fn peak(joint: &JointPath<'_, f64>, order: usize, samples: &[Sample], width: f64) -> f64 {
+    let mut best = samples.iter().map(|s| s[order].abs()).fold(0.0, f64::max);
+    for (i, pair) in samples.windows(2).enumerate() {
+        if tangent_bound(&pair[0], &pair[1], order, width) > best {
+            best = best.max(refine(joint, order, i as f64 * width, width, pair));
+        }
+    }
+    best
+}
+
+/// Where the tangents at both ends of an interval meet: an upper bound of a concave arch between
+/// them, or zero where the slope does not turn from up to down (in absolute value).
+fn tangent_bound(left: &Sample, right: &Sample, order: usize, width: f64) -> f64 {
+    let sign = if left[order] + right[order] < 0.0 { -1.0 } else { 1.0 };
+    let (up, down) = (sign * left[order + 1], -sign * right[order + 1]);
+    if up <= 0.0 || down <= 0.0 {
+        return 0.0;
+    }
+    let rise = sign * (right[order] - left[order]);
+    sign * left[order] + up * (rise + down * width) / (up + down)
+}
+
+/// The extreme value inside an interval whose slope changes sign: the slope's root by regula falsi
+/// with the Illinois rule. The value's error is quadratic in the root's.
+fn refine(joint: &JointPath<'_, f64>, order: usize, start: f64, width: f64, pair: &[Sample]) -> f64 {
+    let (mut a, mut b) = (start, start + width);
+    let (mut slope_a, mut slope_b) = (pair[0][order + 1], pair[1][order + 1]);
+    let mut best: f64 = 0.0;
+    for _ in 0..40 {
+        let middle = (a * slope_b - b * slope_a) / (slope_b - slope_a);
+        let sample = joint.derivatives(middle);
+        best = best.max(sample[order].abs());
+        let slope = sample[order + 1];
+        // What is still to gain is below slope × width.
+        if slope.abs() * (b - a) <= 1e-12 * best {
+            break;
+        }
+        if slope * slope_b < 0.0 {
+            (a, slope_a) = (b, slope_b);
+        } else {
+            slope_a /= 2.0;
+        }
+        (b, slope_b) = (middle, slope);
+    }
+    best
+}
