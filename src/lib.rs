@@ -1,8 +1,19 @@
 //! x
+#[cfg(feature = "harness")]
+pub mod analysis;
 pub mod attitude;
+pub mod cli;
+#[cfg(feature = "harness")]
+pub mod experiment;
+pub mod export;
 pub mod input;
 pub mod kinematics;
 pub mod momentum;
+pub mod optimiser;
+pub mod oracle;
+pub mod output;
+#[cfg(feature = "harness")]
+pub mod plot;
 pub mod problem;
 pub mod robot;
 pub mod scalar;

@@ -1,1 +1,5 @@
-fn main(){}
+//! The `driftless` command.
+
+fn main() -> std::process::ExitCode {
+    driftless::cli::main()
+}

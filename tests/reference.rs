@@ -126,7 +126,7 @@ fn peaks_to_1e_6_relative() {
             let Peaks(peaks) = Peaks::of(&path, intervals);
             for (ours, theirs) in peaks.iter().zip(expected.clone()) {
                 for (a, b) in ours.iter().zip(theirs) {
-                    assert!((a - b).abs() < 1e-6 * b, "{} {intervals}: {a} {b}", shape.name);
+                    assert!((a.value - b).abs() < 1e-6 * b, "{} {intervals}: {a:?} {b}", shape.name);
                 }
             }
         }

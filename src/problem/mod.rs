@@ -1,13 +1,16 @@
 //! What an optimiser sees: a box and a cost.
 
 mod formulation;
+mod motion;
 mod published;
 mod reorientation;
 mod settings;
 
 pub use formulation::{Formulation, Formulated};
+pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};
 pub use reorientation::{Accuracy, Assessment, Reorientation};
+pub(crate) use settings::DEFAULTS;
 pub use settings::{Boxes, TaskFile, TrajectoryTable};
 
 /// A box-bounded minimisation problem.

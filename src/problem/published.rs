@@ -12,7 +12,7 @@ use super::{Accuracy, Assessment, Reorientation, TrajectoryTable};
 use crate::input::{Document, InputError, finite, finite_list, positive};
 use crate::momentum::base_twist;
 use crate::task::{Posture, Task, TaskTable};
-use crate::trajectory::{Path, Peaks};
+use crate::trajectory::{Path, Peak, Peaks};
 
 /// How a published motion is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,11 +30,13 @@ impl Reading {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Physics, Self::AsPublished];
 
-    /// The name used in files and tables.
-    pub fn name(self) -> &'static str {
+    /// The name and what it stands for.
+    pub fn meaning(self) -> &'static str {
         match self {
-            Self::Physics => "physics",
-            Self::AsPublished => "as-published",
+            Self::Physics => "as physics",
+            Self::AsPublished => {
+                "as published (base rotation transposed, roll first, limits seen every 10 ms)"
+            }
         }
     }
 }
@@ -119,6 +121,7 @@ impl ReplayFile {
             Shape::Alpha(_) => 2,
             Shape::Coefficients(rows) => rows[0].0.len(),
         };
+        let terms = Spanned::new(self.motion.span(), terms);
         let (problem, _) = self.trajectory.with_terms(terms).build(task, document)?;
         let coefficients = match shape {
             Shape::Alpha(alpha) => problem.family().from_alpha(&alpha, duration),
@@ -240,9 +243,10 @@ fn transposed_attitude(
 fn sampled_peaks(path: &Path<'_, f64>, duration: f64) -> Peaks {
     let last = (duration / SAMPLE_STEP).floor() as usize;
     let peaks = path.joints().map(|joint| {
-        (0..=last).fold([0.0; 3], |peak: [f64; 3], i| {
-            let sample = joint.derivatives(i as f64 * SAMPLE_STEP / duration);
-            std::array::from_fn(|k| peak[k].max(sample[k + 1].abs()))
+        (0..=last).fold([Peak::default(); 3], |peak, i| {
+            let tau = i as f64 * SAMPLE_STEP / duration;
+            let sample = joint.derivatives(tau);
+            std::array::from_fn(|k| peak[k].or(Peak { value: sample[k + 1].abs(), tau }))
         })
     });
     Peaks(peaks.collect()).over(duration)

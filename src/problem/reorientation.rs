@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::UnitQuaternion;
+use serde::Serialize;
 
 use crate::attitude::net_rotation;
 use crate::task::Task;
@@ -15,7 +16,7 @@ const K_Q_DEG: f64 = 1.0;
 const K_EXCESS: f64 = 0.01;
 
 /// How finely a motion is evaluated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Accuracy {
     /// Magnus steps along the path, each with three evaluations of the base's rate.
     pub attitude_steps: usize,

@@ -88,14 +88,14 @@ impl TaskFile {
 
 impl TrajectoryTable {
     /// Free coefficients a joint.
-    pub fn terms(&self) -> usize {
-        *self.terms.get_ref()
+    pub fn terms(&self) -> &Spanned<usize> {
+        &self.terms
     }
 
     /// The same settings with another number of terms.
     #[must_use]
-    pub fn with_terms(&self, terms: usize) -> Self {
-        Self { terms: Spanned::new(self.terms.span(), terms), ..self.clone() }
+    pub fn with_terms(&self, terms: Spanned<usize>) -> Self {
+        Self { terms, ..self.clone() }
     }
 
     /// The problem over a task, and its search boxes.
@@ -104,7 +104,7 @@ impl TrajectoryTable {
         task: Arc<Task>,
         document: &Document,
     ) -> Result<(Reorientation, Boxes), InputError> {
-        let terms = self.terms();
+        let terms = *self.terms.get_ref();
         if !(1..=MOST_TERMS).contains(&terms) {
             let message = format!("found {terms}, expected 1 to {MOST_TERMS} terms");
             return Err(document.error_at(self.terms.span(), message, None));
@@ -153,13 +153,13 @@ impl BoxTable {
     }
 }
 
-/// From a third of to twice the shortest duration of a typical shape: every joint's first bump at
-/// half its half-width. Follows the limits, and is never zero, though start and goal be the same.
+/// From a quarter to one and a half times the shortest duration of a typical shape: every joint's
+/// first bump at half its half-width. Follows the limits, and is never zero, though start and goal be the same.
 fn default_duration(family: &Family, limits: &Limits, width: f64) -> [f64; 2] {
     let mut coefficients = vec![0.0; family.dimension()];
     coefficients.iter_mut().step_by(family.terms()).for_each(|c| *c = width / 2.0);
     let typical = Peaks::of(&family.path(&coefficients), 256).shortest_duration(limits);
-    [typical / 3.0, typical * 2.0]
+    [typical / 4.0, typical * 1.5]
 }
 
 /// The smallest box of `α` that holds the whole box of coefficients at the geometric mean of the

@@ -1,7 +1,7 @@
 //! Reading a robot file, and the robots that come with the program.
 
 use nalgebra::{Cholesky, Matrix3, Rotation3, Vector3};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::{Body, DhRow, Joint, Robot};
@@ -24,25 +24,20 @@ impl Robot {
 
     /// Reads a robot.
     pub fn from_document(document: &Document) -> Result<Self, InputError> {
-        let file: RobotFile = document.parse()?;
-        if file.joint.get_ref().is_empty() {
-            let message = "found no joint, expected at least one";
-            return Err(document.error_at(file.joint.span(), message, None));
-        }
-        Ok(file.into())
+        RobotFile::read(document).map(Self::from)
     }
 }
 
-/// Lengths in metres, masses in kilograms, inertias in kg m².
-#[derive(Deserialize)]
+/// A robot file. Lengths in metres, masses in kilograms, inertias in kg m².
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RobotFile {
+pub struct RobotFile {
     name: String,
     base: BaseTable,
     joint: Spanned<Vec<JointTable>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BaseTable {
     #[serde(deserialize_with = "positive")]
@@ -54,9 +49,10 @@ struct BaseTable {
     mount_zyx_deg: [f64; 3],
 }
 
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct JointTable {
+    #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
     dh: DhTable,
     #[serde(deserialize_with = "interval")]
@@ -68,7 +64,7 @@ struct JointTable {
     inertia: Inertia,
 }
 
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct DhTable {
     #[serde(default, deserialize_with = "finite")]
@@ -81,12 +77,24 @@ struct DhTable {
     alpha_deg: f64,
 }
 
+impl RobotFile {
+    /// Reads a robot file.
+    pub fn read(document: &Document) -> Result<Self, InputError> {
+        let file: Self = document.parse()?;
+        if file.joint.get_ref().is_empty() {
+            let message = "found no joint, expected at least one";
+            return Err(document.error_at(file.joint.span(), message, None));
+        }
+        Ok(file)
+    }
+}
+
 /// A symmetric matrix that is known to be positive definite.
-#[derive(Deserialize)]
-#[serde(try_from = "InertiaTable")]
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(try_from = "InertiaTable", into = "InertiaTable")]
 struct Inertia(Matrix3<f64>);
 
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct InertiaTable {
     #[serde(deserialize_with = "finite")]
@@ -111,6 +119,19 @@ impl TryFrom<InertiaTable> for Inertia {
         match Cholesky::new(matrix) {
             Some(_) => Ok(Self(matrix)),
             None => Err("the inertia is not positive definite"),
+        }
+    }
+}
+
+impl From<Inertia> for InertiaTable {
+    fn from(Inertia(m): Inertia) -> Self {
+        Self {
+            xx: m[(0, 0)],
+            yy: m[(1, 1)],
+            zz: m[(2, 2)],
+            xy: m[(0, 1)],
+            xz: m[(0, 2)],
+            yz: m[(1, 2)],
         }
     }
 }

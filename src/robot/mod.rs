@@ -2,12 +2,15 @@
 
 mod file;
 
+pub use file::RobotFile;
+
 use nalgebra::{Matrix3, Rotation3, Vector3};
+use serde::Serialize;
 
 /// A rigid base that floats freely and the serial arm mounted on it.
 ///
 /// Base axes have their origin at the base's centre of mass.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Robot {
     /// The name given in its file.
     pub name: String,
@@ -22,7 +25,7 @@ pub struct Robot {
 }
 
 /// Mass and inertia of one rigid body.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Body {
     /// Mass \[kg\].
     pub mass: f64,
@@ -34,7 +37,7 @@ pub struct Body {
 ///
 /// Standard Denavit–Hartenberg with offset: the step to the next joint is
 /// `Rz(θ + offset) · Tz(d) · Tx(a) · Rx(alpha)`, and the joint turns about the `z` before it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Joint {
     /// A name for tables, charts and exports.
     pub name: String,
@@ -49,7 +52,7 @@ pub struct Joint {
 }
 
 /// One row of a Denavit–Hartenberg table, kept as what a sweep needs of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct DhRow {
     /// The step from this joint to the next, in the proximal frame \[m\]: Table 2's `a_i + b_i`.
     pub step: Vector3<f64>,

@@ -12,7 +12,7 @@ use crate::trajectory::Limits;
 pub use file::TaskTable;
 
 /// A rest-to-rest motion of the arm that is also to turn the base.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Task {
     /// The robot.
     pub robot: Arc<Robot>,

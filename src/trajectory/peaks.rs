@@ -1,14 +1,33 @@
 //! The largest rate, acceleration and jerk over continuous time, and the duration they allow.
 
+use serde::Serialize;
+
 use super::path::{JointPath, Path};
 
 /// Largest `|θ'|`, `|θ''|`, `|θ'''|` of each joint over the whole path.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Peaks(pub Vec<[f64; 3]>);
+pub struct Peaks(pub Vec<[Peak; 3]>);
+
+/// The largest absolute value of something over the whole path.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Peak {
+    /// The value.
+    pub value: f64,
+    /// Where it stands, in normalised time.
+    pub tau: f64,
+}
+
+impl Peak {
+    /// The larger of two; the first where they are equal.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        if other.value > self.value { other } else { self }
+    }
+}
 
 /// The most each joint may do: rate \[rad/s\], acceleration \[rad/s²\], jerk \[rad/s³\]
 /// (eqs. 30–32).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Limits(pub Vec<[f64; 3]>);
 
 /// A joint's angle and first four derivatives at one time.
@@ -35,7 +54,8 @@ impl Peaks {
     #[must_use]
     pub fn over(&self, duration: f64) -> Self {
         let scale = [1, 2, 3].map(|order| duration.powi(order));
-        Self(self.0.iter().map(|peak| std::array::from_fn(|k| peak[k] / scale[k])).collect())
+        let over = |peak: &Peak, scale: f64| Peak { value: peak.value / scale, ..*peak };
+        Self(self.0.iter().map(|p| std::array::from_fn(|k| over(&p[k], scale[k]))).collect())
     }
 
     /// The shortest duration within the limits, in closed form \[s\]:
@@ -54,7 +74,7 @@ impl Peaks {
         let mut largest = [0.0; 3];
         for (peak, limit) in self.0.iter().zip(&limits.0) {
             for k in 0..3 {
-                largest[k] = f64::max(largest[k], peak[k] / limit[k]);
+                largest[k] = f64::max(largest[k], peak[k].value / limit[k]);
             }
         }
         largest
@@ -62,11 +82,13 @@ impl Peaks {
 }
 
 /// The largest absolute value of one derivative.
-fn peak(joint: &JointPath<'_, f64>, order: usize, samples: &[Sample], width: f64) -> f64 {
-    let mut best = samples.iter().map(|s| s[order].abs()).fold(0.0, f64::max);
+fn peak(joint: &JointPath<'_, f64>, order: usize, samples: &[Sample], width: f64) -> Peak {
+    let sampled = samples.iter().enumerate();
+    let sampled = sampled.map(|(i, s)| Peak { value: s[order].abs(), tau: i as f64 * width });
+    let mut best = sampled.fold(Peak::default(), Peak::or);
     for (i, pair) in samples.windows(2).enumerate() {
-        if tangent_bound(&pair[0], &pair[1], order, width) > best {
-            best = best.max(refine(joint, order, i as f64 * width, width, pair));
+        if tangent_bound(&pair[0], &pair[1], order, width) > best.value {
+            best = best.or(refine(joint, order, i as f64 * width, width, pair));
         }
     }
     best
@@ -86,17 +108,17 @@ fn tangent_bound(left: &Sample, right: &Sample, order: usize, width: f64) -> f64
 
 /// The extreme value inside an interval whose slope changes sign: the slope's root by regula falsi
 /// with the Illinois rule. The value's error is quadratic in the root's.
-fn refine(joint: &JointPath<'_, f64>, order: usize, start: f64, width: f64, pair: &[Sample]) -> f64 {
+fn refine(joint: &JointPath<'_, f64>, order: usize, start: f64, width: f64, pair: &[Sample]) -> Peak {
     let (mut a, mut b) = (start, start + width);
     let (mut slope_a, mut slope_b) = (pair[0][order + 1], pair[1][order + 1]);
-    let mut best: f64 = 0.0;
+    let mut best = Peak::default();
     for _ in 0..40 {
         let middle = (a * slope_b - b * slope_a) / (slope_b - slope_a);
         let sample = joint.derivatives(middle);
-        best = best.max(sample[order].abs());
+        best = best.or(Peak { value: sample[order].abs(), tau: middle });
         let slope = sample[order + 1];
         // What is still to gain is below slope × width.
-        if slope.abs() * (b - a) <= 1e-12 * best {
+        if slope.abs() * (b - a) <= 1e-12 * best.value {
             break;
         }
         if slope * slope_b < 0.0 {

@@ -1,0 +1,11 @@
+//! From stored runs to tables of what they say.
+
+mod convergence;
+mod runs;
+mod summary;
+mod table;
+
+pub use convergence::{Curve, convergence};
+pub use runs::{BestRun, Run, best_run, runs};
+pub use summary::summary;
+pub use table::render;

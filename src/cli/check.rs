@@ -1,0 +1,97 @@
+//! `driftless check`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{CliError, warn_of};
+use crate::input::{Document, InputError};
+use crate::problem::{ReplayFile, TaskFile};
+use crate::robot::{Robot, RobotFile};
+
+/// Say what is wrong with an input file, or print it resolved
+#[derive(Debug, Args)]
+pub(super) struct Check {
+    /// A task, robot, replay or experiment file
+    #[arg(value_name = "FILE.toml")]
+    file: PathBuf,
+}
+
+/// What a file is, told by its top-level keys.
+enum Kind {
+    Robot,
+    Replay,
+    Experiment,
+    Task,
+}
+
+impl Kind {
+    fn of(document: &Document) -> Result<Self, InputError> {
+        let has = |keys: &[&str]| -> Result<bool, InputError> {
+            keys.iter().try_fold(false, |found, key| Ok(found || document.has_key(key)?))
+        };
+        Ok(if has(&["joint", "base"])? {
+            Self::Robot
+        } else if has(&["motion"])? {
+            Self::Replay
+        } else if has(&["name", "optimiser", "seeds", "budget", "sweep", "targets"])? {
+            Self::Experiment
+        } else {
+            Self::Task
+        })
+    }
+}
+
+impl Check {
+    pub(super) fn execute(self) -> Result<(), CliError> {
+        let document = Document::read(&self.file)?;
+        match Kind::of(&document)? {
+            Kind::Robot => {
+                let file = RobotFile::read(&document)?;
+                print_resolved("robot", &file);
+                warn_of(&Robot::from(file));
+            }
+            Kind::Replay => {
+                let file = ReplayFile::read(&document)?;
+                warn_of(&file.build(&document)?.problem.task().robot);
+                print_resolved("motion to replay", &file);
+            }
+            Kind::Task => {
+                let file = TaskFile::read(&document)?;
+                let (problem, _) = file.build(&document)?;
+                warn_of(&problem.task().robot);
+                print_resolved("task", &file);
+            }
+            Kind::Experiment => check_experiment(&document)?,
+        }
+        Ok(())
+    }
+}
+
+#[cfg(feature = "harness")]
+fn check_experiment(document: &Document) -> Result<(), CliError> {
+    use crate::experiment::{ExperimentFile, Plan};
+    let file = ExperimentFile::read(document)?;
+    let plan = Plan::new(&file, document)?;
+    warn_of(&plan.instances[0].problem.task().robot);
+    print_resolved("experiment", &file);
+    let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
+    println!(
+        "\n# {} runs: {instances} instances × {optimisers} optimisers × {} seeds",
+        plan.runs.len(),
+        file.seeds
+    );
+    Ok(())
+}
+
+#[cfg(not(feature = "harness"))]
+fn check_experiment(_: &Document) -> Result<(), CliError> {
+    let message = "this is an experiment; this build leaves experiments out".to_owned();
+    Err(CliError::Usage { message, help: None })
+}
+
+fn print_resolved(kind: &str, file: &impl Serialize) {
+    println!("# {kind}, with every default filled in");
+    print!("{}", toml::to_string(file).unwrap_or_default());
+}

@@ -1,0 +1,70 @@
+//! `driftless list`.
+
+use clap::Args;
+
+use super::CliError;
+use crate::input::Document;
+use crate::optimiser::Settings;
+use crate::problem::{Boxes, Formulated, Formulation, Problem as _, TaskFile};
+use crate::robot::Robot;
+
+/// Show optimisers, problems and robots with their settings
+#[derive(Debug, Args)]
+pub(super) struct List {}
+
+impl List {
+    #[expect(clippy::unused_self, reason = "every verb is a value that executes")]
+    pub(super) fn execute(self) -> Result<(), CliError> {
+        println!("optimisers, with their settings and defaults");
+        for settings in Settings::all() {
+            println!("\n  {}", settings.name());
+            for setting in settings.describe() {
+                println!("    {} = {}", setting.name, setting.default);
+                println!("        {}", setting.meaning);
+            }
+        }
+        problems()?;
+        println!("\nrobots that come with the program");
+        for name in Robot::embedded_names() {
+            if let Some(document) = Robot::embedded(name) {
+                let robot = Robot::from_document(&document)?;
+                println!("\n  {name}: {} joints, {:.1} kg", robot.joint_count(), robot.total_mass());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The formulations of the paper's task with the boxes that are searched.
+fn problems() -> Result<(), CliError> {
+    let document = Document::embedded("the paper's task", "");
+    let (problem, boxes) = TaskFile::read(&document)?.build(&document)?;
+    let problem = std::sync::Arc::new(problem);
+    println!("\nproblems: the reorientation task in these formulations");
+    println!("(dimensions and boxes are those of the paper's task)");
+    for formulation in Formulation::ALL {
+        let formulated = Formulated::new(formulation, problem.clone(), &boxes);
+        println!("\n  {}: {} variables", formulation.name(), formulated.bounds().len());
+        println!("    {}", variables(formulation, &boxes));
+    }
+    Ok(())
+}
+
+fn variables(formulation: Formulation, boxes: &Boxes) -> String {
+    let coefficients = || {
+        let each = boxes.coefficient.iter().enumerate();
+        let each: Vec<_> = each.map(|(k, c)| format!("|c_{}| ≤ {c}", k + 1)).collect();
+        each.join(", ")
+    };
+    let [shortest, longest] = boxes.duration;
+    let duration = format!("{shortest:.3} s ≤ t_f ≤ {longest:.3} s");
+    match formulation {
+        Formulation::Raw => {
+            let each = boxes.alpha.iter().enumerate();
+            let each: Vec<_> = each.map(|(k, a)| format!("|α_{}| ≤ {a:.3e}", k + 6)).collect();
+            format!("{}, {duration}", each.join(", "))
+        }
+        Formulation::Scaled => format!("{}, {duration}", coefficients()),
+        Formulation::TimeFree => format!("{}; t_f is the shortest within the limits", coefficients()),
+    }
+}

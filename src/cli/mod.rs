@@ -1,0 +1,158 @@
+//! The command line, one file a verb.
+
+mod check;
+mod list;
+mod motion;
+mod plan;
+mod progress;
+mod replay;
+#[cfg(feature = "harness")]
+mod run;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::{Arc, LazyLock};
+
+use clap::{Parser, Subcommand};
+use miette::{Diagnostic, MietteHandlerOpts, Report};
+use thiserror::Error;
+
+use crate::export::ExportError;
+use crate::input::{Document, InputError};
+use crate::oracle::Watch;
+use crate::robot::Robot;
+
+/// Plan and benchmark the motion of free-floating space robots.
+///
+/// A robot arm on a satellite turns the satellite as it moves. The motions planned here bring the
+/// arm where it should be and turn the base to where it should point, without fuel, as fast as the
+/// joints' limits on rate, acceleration and jerk allow.
+#[derive(Debug, Parser)]
+#[command(name = "driftless", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Run an experiment: every optimiser on every instance for every seed
+    #[cfg(feature = "harness")]
+    Run(run::Run),
+    /// Find the best motion for one task
+    Plan(plan::Plan),
+    /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
+    Replay(replay::Replay),
+    /// Show optimisers, problems and robots with their settings
+    List(list::List),
+    /// Say what is wrong with an input file, or print it resolved
+    Check(check::Check),
+}
+
+/// Why a command did not do what it was asked to.
+#[derive(Debug, Error, Diagnostic)]
+enum CliError {
+    /// A file that cannot be used.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Input(#[from] InputError),
+    /// An argument that cannot be used.
+    #[error("{message}")]
+    Usage {
+        message: String,
+        #[help]
+        help: Option<String>,
+    },
+    /// The user wanted the command to end.
+    #[error("interrupted: {0}")]
+    Interrupted(String),
+    /// No motion came of it.
+    #[error("no motion found: every evaluation gave a cost that is not a number")]
+    NoMotion,
+    /// A motion could not be written.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// A figure could not be drawn or written.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    Plot(#[from] crate::plot::PlotError),
+    /// A run could not be done or stored.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    Run(#[from] crate::experiment::RunError),
+    /// A stored result could not be read.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    Store(#[from] crate::experiment::StoreError),
+    /// A table could not be made.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    Table(#[from] polars::error::PolarsError),
+    /// A file could not be written.
+    #[error(transparent)]
+    File(#[from] crate::output::FileError),
+}
+
+impl CliError {
+    fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Input(_) | Self::Usage { .. } => ExitCode::from(2),
+            _ => ExitCode::from(1),
+        }
+    }
+}
+
+/// Parses the arguments and does what they ask: exit status 0 done, 1 failed, 2 bad usage or input.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let hook = |_: &_| -> Box<dyn miette::ReportHandler> {
+        Box::new(MietteHandlerOpts::new().terminal_links(false).context_lines(1).build())
+    };
+    // Only fails where a hook is set already, which then serves as well.
+    let _ = miette::set_hook(Box::new(hook));
+    let outcome = match cli.verb {
+        #[cfg(feature = "harness")]
+        Verb::Run(run) => run.execute(),
+        Verb::Plan(plan) => plan.execute(),
+        Verb::Replay(replay) => replay.execute(),
+        Verb::List(list) => list.execute(),
+        Verb::Check(check) => check.execute(),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            let code = error.exit_code();
+            eprintln!("{:?}", Report::new(error));
+            code
+        }
+    }
+}
+
+/// The file named, or a text that comes with the program.
+fn read_or(file: Option<&Path>, embedded: impl FnOnce() -> Document) -> Result<Document, InputError> {
+    file.map_or_else(|| Ok(embedded()), Document::read)
+}
+
+/// Says what is unphysical about a robot.
+fn warn_of(robot: &Robot) {
+    if let Some(warning) = robot.warning() {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Set by Ctrl-C.
+fn watch() -> Arc<Watch> {
+    static WATCH: LazyLock<Arc<Watch>> = LazyLock::new(|| {
+        let watch = Arc::new(Watch::default());
+        let handler = watch.clone();
+        // Without a handler Ctrl-C still ends the program, only less gracefully.
+        let _ = ctrlc::set_handler(move || handler.interrupt());
+        watch
+    });
+    WATCH.clone()
+}
+
+/// A path given as an argument, for messages.
+fn shown(path: Option<&PathBuf>, otherwise: &str) -> String {
+    path.map_or_else(|| otherwise.to_owned(), |path| path.display().to_string())
+}

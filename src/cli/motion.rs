@@ -1,0 +1,114 @@
+//! What `plan` and `replay` say of a motion.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::CliError;
+use crate::export::{self, MotionFormat, write_motion};
+use crate::problem::{Assessment, Motion, Reorientation};
+use crate::trajectory::Peaks;
+
+/// Where to write a motion.
+#[derive(Debug, Args)]
+pub(super) struct MotionFiles {
+    /// Write the motion to a .csv, .parquet or .yaml file (ROS JointTrajectory)
+    #[arg(long, value_name = "FILE")]
+    motion: Option<PathBuf>,
+    /// Draw joint angles, their derivatives and the base's attitude into a folder
+    #[cfg(feature = "harness")]
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+}
+
+impl MotionFiles {
+    /// Finds fault with the file's name before any work is done.
+    pub(super) fn check(&self) -> Result<(), CliError> {
+        self.format().map(drop)
+    }
+
+    fn format(&self) -> Result<Option<(&Path, MotionFormat)>, CliError> {
+        let Some(path) = &self.motion else { return Ok(None) };
+        let usage = |message: String| CliError::Usage { message, help: None };
+        match MotionFormat::of(path) {
+            Some(format) if format.is_available() => Ok(Some((path, format))),
+            Some(_) => Err(usage("this build leaves out Parquet".to_owned())),
+            None => Err(usage(format!(
+                "cannot tell the format of {}, expected a name in .csv, .parquet or .yaml",
+                path.display()
+            ))),
+        }
+    }
+
+    /// Writes what was asked for.
+    pub(super) fn write(
+        &self,
+        problem: &Reorientation,
+        coefficients: &[f64],
+        duration: f64,
+    ) -> Result<(), CliError> {
+        if let Some((path, format)) = self.format()? {
+            let motion = Motion::sample(problem, coefficients, duration, export::INTERVALS);
+            write_motion(path, format, &motion)?;
+        }
+        #[cfg(feature = "harness")]
+        if let Some(folder) = &self.figures {
+            let motion = Motion::sample(problem, coefficients, duration, crate::plot::SAMPLES);
+            crate::plot::write_motion_figures(folder, &motion, problem.task())?;
+        }
+        Ok(())
+    }
+}
+
+/// Largest rate, acceleration and jerk of each joint.
+#[derive(Debug, Serialize)]
+pub(super) struct PeaksDeg {
+    rate_deg_s: Vec<f64>,
+    acceleration_deg_s2: Vec<f64>,
+    jerk_deg_s3: Vec<f64>,
+}
+
+impl From<&Peaks> for PeaksDeg {
+    fn from(peaks: &Peaks) -> Self {
+        let all = |k: usize| peaks.0.iter().map(|p| p[k].value.to_degrees()).collect();
+        Self { rate_deg_s: all(0), acceleration_deg_s2: all(1), jerk_deg_s3: all(2) }
+    }
+}
+
+/// For people: cost and its parts, then the peaks joint by joint with the share of the limit used.
+pub(super) struct Told<'a> {
+    pub(super) problem: &'a Reorientation,
+    pub(super) assessment: &'a Assessment,
+}
+
+impl fmt::Display for Told<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { problem, assessment } = self;
+        writeln!(f, "  J              {:.6}", assessment.cost)?;
+        writeln!(f, "  duration       {:.6} s", assessment.duration)?;
+        writeln!(f, "  base residual  {:.6}°", assessment.residual().to_degrees())?;
+        writeln!(f, "  penalty        {:.6}", assessment.penalty())?;
+        writeln!(f, "  joint          rate [°/s]     acceleration [°/s²]   jerk [°/s³]")?;
+        let task = problem.task();
+        let joints = task.robot.joints.iter().zip(&assessment.peaks.0).zip(&task.limits.0);
+        for ((joint, peaks), limits) in joints {
+            write!(f, "  {:<12}", joint.name)?;
+            for (peak, limit) in peaks.iter().zip(limits) {
+                let share = 100.0 * peak.value / limit;
+                write!(f, "  {:>9.4} ({share:>4.0} %)", peak.value.to_degrees())?;
+            }
+            writeln!(f)?;
+        }
+        let largest = |k: usize| {
+            let all = task.robot.joints.iter().zip(&assessment.peaks.0);
+            all.max_by(|a, b| a.1[k].value.total_cmp(&b.1[k].value))
+        };
+        if let Some((joint, peaks)) = largest(2) {
+            let (jerk, time) = (peaks[2].value.to_degrees(), peaks[2].tau * assessment.duration);
+            writeln!(f, "  largest jerk   {jerk:.4} °/s³ on {} at {time:.4} s", joint.name)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,59 @@
+//! A bar on a terminal, nothing elsewhere; verbs print plain lines of their own there.
+
+use std::io::IsTerminal as _;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{JoinHandle, spawn};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::oracle::Watch;
+
+/// Shows how many evaluations of all are done, until dropped.
+pub(super) struct Bar {
+    bar: ProgressBar,
+    done: Arc<AtomicBool>,
+    painter: Option<JoinHandle<()>>,
+}
+
+impl Bar {
+    pub(super) fn new(evaluations: u64, watch: Arc<Watch>) -> Self {
+        let bar = ProgressBar::new(evaluations);
+        let template = "{bar:40} {percent:>3} %  {human_pos} of {human_len} evaluations, {eta} left {msg}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        let done = Arc::new(AtomicBool::new(false));
+        let painter = std::io::stderr().is_terminal().then(|| {
+            let (bar, done) = (bar.clone(), done.clone());
+            spawn(move || {
+                while !done.load(Ordering::Relaxed) {
+                    bar.set_position(watch.evaluations());
+                    std::thread::sleep(Duration::from_millis(100));
+                }
+            })
+        });
+        Self { bar, done, painter }
+    }
+
+    /// Shows a line: above the bar on a terminal, by itself elsewhere.
+    pub(super) fn line(&self, line: &str) {
+        if self.painter.is_some() {
+            self.bar.println(line);
+        } else {
+            eprintln!("{line}");
+        }
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.done.store(true, Ordering::Relaxed);
+        if let Some(painter) = self.painter.take() {
+            // A painter that panicked has nothing more to paint.
+            let _ = painter.join();
+        }
+        self.bar.finish_and_clear();
+    }
+}

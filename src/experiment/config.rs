@@ -1,0 +1,103 @@
+//! The experiment file.
+
+use std::num::NonZeroU64;
+
+use serde::de::{Deserializer, Error as _};
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use crate::input::{Document, InputError, finite_list, fraction, positive};
+use crate::optimiser::Settings;
+use crate::problem::{DEFAULTS as TASK_DEFAULTS, TrajectoryTable};
+use crate::task::TaskTable;
+
+const DEFAULTS: &str = include_str!("defaults.toml");
+
+/// An experiment file: every optimiser on every instance of the sweep, for every seed.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExperimentFile {
+    /// Names the folder of its results.
+    #[serde(deserialize_with = "folder_name")]
+    pub name: String,
+    /// Number of seeds; they are 1, 2, … and the same for every optimiser and instance.
+    pub seeds: NonZeroU64,
+    /// What each run may spend.
+    pub budget: BudgetTable,
+    /// Costs whose success rate the summary shows.
+    #[serde(deserialize_with = "finite_list")]
+    pub targets: Vec<f64>,
+    /// The task that the sweep varies.
+    pub task: TaskTable,
+    /// The family to search and how.
+    pub trajectory: TrajectoryTable,
+    /// What is varied.
+    pub sweep: Sweep,
+    /// The field.
+    pub optimiser: Spanned<Vec<Settings>>,
+}
+
+/// The `budget` table.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BudgetTable {
+    /// Evaluations a run.
+    pub evaluations: NonZeroU64,
+}
+
+/// The `[sweep]` table: the instances are the cross product of its lists.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sweep {
+    /// `K_b`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub weight_base: Vec<Weight>,
+    /// The same limit for all joints \[°/s\].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rate_limit_deg_s: Vec<Limit>,
+    /// The same limit for all joints \[°/s²\].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub acceleration_limit_deg_s2: Vec<Limit>,
+    /// The same limit for all joints \[°/s³\].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub jerk_limit_deg_s3: Vec<Limit>,
+    /// Free coefficients a joint.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub terms: Vec<Spanned<usize>>,
+}
+
+/// A weight from 0 to 1.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct Weight(#[serde(deserialize_with = "fraction")] pub f64);
+
+/// A limit above zero.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct Limit(#[serde(deserialize_with = "positive")] pub f64);
+
+impl ExperimentFile {
+    /// Reads an experiment; the task it leaves out is the paper's.
+    pub fn read(document: &Document) -> Result<Self, InputError> {
+        let file: Self = document.parse_over(&[DEFAULTS, TASK_DEFAULTS])?;
+        if file.optimiser.get_ref().is_empty() {
+            let message = "found no optimiser, expected at least one `[[optimiser]]`";
+            return Err(document.error_at(file.optimiser.span(), message, None));
+        }
+        Ok(file)
+    }
+
+    /// The experiment that runs when none is named.
+    pub fn embedded() -> Document {
+        Document::embedded("default.toml", include_str!("../../experiments/default.toml"))
+    }
+}
+
+/// A name that is safe as a folder's on any system.
+fn folder_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    let good = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if name.is_empty() || name.starts_with('.') || !name.chars().all(good) {
+        let expected = "letters, digits, `-`, `_` and `.`, since it names a folder";
+        return Err(D::Error::custom(format!("found name {name:?}, expected {expected}")));
+    }
+    Ok(name)
+}

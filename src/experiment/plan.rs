@@ -1,0 +1,223 @@
+//! An experiment spelt out: every instance, every run, every key.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+use super::ExperimentFile;
+use crate::input::{Document, InputError};
+use crate::optimiser::Settings;
+use crate::oracle::Budget;
+use crate::problem::{Boxes, Formulated, Reorientation};
+use crate::task::Task;
+
+/// Raised when a change makes the same run give another result.
+const PROBLEM_VERSION: u32 = 1;
+
+/// An experiment spelt out.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The experiment's name.
+    pub name: String,
+    /// Costs whose success rate is asked for.
+    pub targets: Vec<f64>,
+    /// The instances.
+    pub instances: Vec<Instance>,
+    /// The field.
+    pub optimisers: Vec<Entrant>,
+    /// All runs, in the order in which they start.
+    pub runs: Vec<RunSpec>,
+}
+
+/// One point of the sweep.
+#[derive(Debug, Clone)]
+pub struct Instance {
+    /// What the sweep set, such as `weight_base=0.5 terms=4`; empty without a sweep.
+    pub label: String,
+    /// The problem.
+    pub problem: Arc<Reorientation>,
+    /// Where to search.
+    pub boxes: Boxes,
+}
+
+/// One optimiser of the field.
+#[derive(Debug, Clone)]
+pub struct Entrant {
+    /// Optimiser and formulation, numbered where the field has both more than once.
+    pub label: String,
+    /// The settings.
+    pub settings: Settings,
+}
+
+/// One optimiser on one instance with one seed.
+#[derive(Debug, Clone)]
+pub struct RunSpec {
+    /// Hash of everything that determines the run's result.
+    pub key: String,
+    /// Index of the instance.
+    pub instance: usize,
+    /// Index of the optimiser.
+    pub optimiser: usize,
+    /// The seed.
+    pub seed: u64,
+    /// What the run may spend.
+    pub budget: Budget,
+}
+
+/// A disjoint part of an experiment, `index` of `count`, counted from zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl FromStr for Shard {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (index, count) = text.split_once('/').ok_or("expected I/N, such as 0/4")?;
+        match (index.parse(), count.parse()) {
+            (Ok(index), Ok(count)) if index < count => Ok(Self { index, count }),
+            (Ok(_), Ok(_)) => Err("expected I/N with I from 0 to N - 1"),
+            _ => Err("expected I/N with two whole numbers, such as 0/4"),
+        }
+    }
+}
+
+impl Plan {
+    /// Spells an experiment out.
+    pub fn new(file: &ExperimentFile, document: &Document) -> Result<Self, InputError> {
+        let task = file.task.build(document)?;
+        let instances = instances(file, &task, document)?;
+        let optimisers = entrants(file.optimiser.get_ref());
+        let budget = Budget { evaluations: file.budget.evaluations.get(), target: None };
+        let mut runs = Vec::new();
+        for (i, instance) in instances.iter().enumerate() {
+            for (o, entrant) in optimisers.iter().enumerate() {
+                runs.extend((1..=file.seeds.get()).map(|seed| RunSpec {
+                    key: key(instance, &entrant.settings, seed, budget),
+                    instance: i,
+                    optimiser: o,
+                    seed,
+                    budget,
+                }));
+            }
+        }
+        Ok(Self { name: file.name.clone(), targets: file.targets.clone(), instances, optimisers, runs })
+    }
+
+    /// Only the runs of one shard.
+    #[must_use]
+    pub fn shard(mut self, shard: Shard) -> Self {
+        let mut position = 0..;
+        self.runs.retain(|_| position.next().is_some_and(|p| p % shard.count == shard.index));
+        self
+    }
+
+    /// The problem as a run's optimiser sees it.
+    pub fn problem(&self, run: &RunSpec) -> Formulated {
+        let instance = &self.instances[run.instance];
+        let formulation = self.optimisers[run.optimiser].settings.formulation();
+        Formulated::new(formulation, instance.problem.clone(), &instance.boxes)
+    }
+}
+
+fn entrants(field: &[Settings]) -> Vec<Entrant> {
+    let mut met = HashMap::new();
+    let label = |settings: &Settings| {
+        let plain = format!("{}/{}", settings.name(), settings.formulation().name());
+        let count = met.entry(plain.clone()).and_modify(|c| *c += 1).or_insert(1);
+        if *count == 1 { plain } else { format!("{plain}#{count}") }
+    };
+    let labels: Vec<String> = field.iter().map(label).collect();
+    labels.into_iter().zip(field).map(|(label, s)| Entrant { label, settings: s.clone() }).collect()
+}
+
+/// The cross product of the sweep's lists.
+fn instances(
+    file: &ExperimentFile,
+    task: &Task,
+    document: &Document,
+) -> Result<Vec<Instance>, InputError> {
+    /// A task on its way through the lists, with what they have set so far.
+    #[derive(Clone)]
+    struct Draft {
+        label: String,
+        task: Task,
+        terms: toml::Spanned<usize>,
+    }
+    /// Every draft with every value of one list; a list without values leaves the drafts alone.
+    fn cross<T>(drafts: Vec<Draft>, name: &str, values: &[T], set: impl Fn(&mut Draft, &T) -> String) -> Vec<Draft> {
+        if values.is_empty() {
+            return drafts;
+        }
+        let with = |draft: &Draft, value: &T| {
+            let mut draft = draft.clone();
+            let shown = set(&mut draft, value);
+            let space = if draft.label.is_empty() { "" } else { " " };
+            let _ = write!(draft.label, "{space}{name}={shown}");
+            draft
+        };
+        drafts.iter().flat_map(|draft| values.iter().map(|value| with(draft, value))).collect()
+    }
+    let limit = |order: usize| {
+        move |draft: &mut Draft, limit: &super::config::Limit| {
+            draft.task.limits.0.iter_mut().for_each(|l| l[order] = limit.0.to_radians());
+            limit.0.to_string()
+        }
+    };
+    let sweep = &file.sweep;
+    let terms = file.trajectory.terms().clone();
+    let mut drafts = vec![Draft { label: String::new(), task: task.clone(), terms }];
+    drafts = cross(drafts, "weight_base", &sweep.weight_base, |draft, weight| {
+        draft.task.base_weight = weight.0;
+        weight.0.to_string()
+    });
+    drafts = cross(drafts, "rate_limit_deg_s", &sweep.rate_limit_deg_s, limit(0));
+    drafts = cross(drafts, "acceleration_limit_deg_s2", &sweep.acceleration_limit_deg_s2, limit(1));
+    drafts = cross(drafts, "jerk_limit_deg_s3", &sweep.jerk_limit_deg_s3, limit(2));
+    drafts = cross(drafts, "terms", &sweep.terms, |draft, terms| {
+        draft.terms = terms.clone();
+        terms.get_ref().to_string()
+    });
+    let build = |draft: Draft| {
+        let table = file.trajectory.with_terms(draft.terms);
+        let (problem, boxes) = table.build(Arc::new(draft.task), document)?;
+        Ok(Instance { label: draft.label, problem: Arc::new(problem), boxes })
+    };
+    drafts.into_iter().map(build).collect()
+}
+
+/// Hash of everything that determines a run's result, as 16 hexadecimal digits.
+fn key(instance: &Instance, settings: &Settings, seed: u64, budget: Budget) -> String {
+    #[derive(Serialize)]
+    struct Determines<'a> {
+        version: u32,
+        task: &'a Task,
+        terms: usize,
+        accuracy: crate::problem::Accuracy,
+        boxes: &'a Boxes,
+        optimiser: &'a Settings,
+        seed: u64,
+        evaluations: u64,
+    }
+    let all = Determines {
+        version: PROBLEM_VERSION,
+        task: instance.problem.task(),
+        terms: instance.problem.family().terms(),
+        accuracy: instance.problem.accuracy(),
+        boxes: &instance.boxes,
+        optimiser: settings,
+        seed,
+        evaluations: budget.evaluations,
+    };
+    let text = serde_json::to_string(&all).unwrap_or_default();
+    Sha256::digest(text).iter().take(8).fold(String::new(), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}

@@ -1,0 +1,98 @@
+//! Every optimiser by name, with its settings.
+
+use schemars::{JsonSchema, schema_for};
+use serde::{Deserialize, Serialize};
+
+use super::{Optimiser, Pso, RandomSearch};
+use crate::problem::Formulation;
+
+/// One optimiser and its settings, as an `[[optimiser]]` table says it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Settings {
+    /// The paper's particle swarm.
+    Pso(Pso),
+    /// Random search.
+    Random(RandomSearch),
+}
+
+/// A setting as `list` shows it.
+#[derive(Debug, Clone, Serialize)]
+pub struct Setting {
+    /// Key in the file.
+    pub name: String,
+    /// Value when left out.
+    pub default: String,
+    /// What it means.
+    pub meaning: String,
+}
+
+impl Settings {
+    /// Every optimiser with its default settings.
+    pub fn all() -> Vec<Self> {
+        vec![Self::Pso(Pso::default()), Self::Random(RandomSearch::default())]
+    }
+
+    /// The optimiser of that name with its default settings.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|settings| settings.name() == name)
+    }
+
+    /// The optimiser's name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Pso(_) => "pso",
+            Self::Random(_) => "random",
+        }
+    }
+
+    /// In which variables it searches.
+    pub fn formulation(&self) -> Formulation {
+        match self {
+            Self::Pso(pso) => pso.formulation,
+            Self::Random(random) => random.formulation,
+        }
+    }
+
+    /// The optimiser itself.
+    pub fn optimiser(&self) -> &dyn Optimiser {
+        match self {
+            Self::Pso(pso) => pso,
+            Self::Random(random) => random,
+        }
+    }
+
+    /// Every setting with its default and its meaning, from the documentation of its field.
+    pub fn describe(&self) -> Vec<Setting> {
+        let schema = match self {
+            Self::Pso(_) => schema_for!(Pso),
+            Self::Random(_) => schema_for!(RandomSearch),
+        };
+        let properties = schema.get("properties").and_then(|p| p.as_object());
+        properties
+            .into_iter()
+            .flatten()
+            .map(|(name, property)| Setting {
+                name: name.clone(),
+                default: property.get("default").map_or("none".to_owned(), toml_value),
+                meaning: property
+                    .get("description")
+                    .and_then(|d| d.as_str())
+                    .unwrap_or_default()
+                    .replace('\n', " "),
+            })
+            .collect()
+    }
+}
+
+/// A JSON value as one writes it in TOML.
+fn toml_value(value: &serde_json::Value) -> String {
+    match value {
+        serde_json::Value::Null => "none".to_owned(),
+        serde_json::Value::Object(map) => {
+            let pairs: Vec<_> = map.iter().map(|(k, v)| format!("{k} = {}", toml_value(v))).collect();
+            format!("{{ {} }}", pairs.join(", "))
+        }
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,37 @@
+//! Random search: every point drawn uniformly from the box, none remembered. The bar that every
+//! other method has to clear.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Optimiser, uniform_point};
+use crate::oracle::{Oracle, Rng, Stop};
+use crate::problem::{Evaluation, Formulation, Points};
+
+/// Settings of random search.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RandomSearch {
+    /// variables in which the task is searched
+    pub formulation: Formulation,
+}
+
+impl Default for RandomSearch {
+    fn default() -> Self {
+        Self { formulation: Formulation::TimeFree }
+    }
+}
+
+/// Points evaluated at a time; the result does not depend on it.
+const BATCH: usize = 64;
+
+impl Optimiser for RandomSearch {
+    fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
+        let mut points = Points::zeros(oracle.bounds().len(), BATCH);
+        let mut evaluations = [Evaluation::default(); BATCH];
+        loop {
+            points.iter_mut().for_each(|x| uniform_point(oracle, rng, x));
+            oracle.evaluate_batch(&points, &mut evaluations)?;
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! The only door from an optimiser to a problem: it counts, keeps the best, and says when to stop.
+
+mod rng;
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::problem::{Bounds, Evaluation, Points, Problem};
+pub use rng::Rng;
+
+/// Why an optimiser has to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Stop {
+    /// Every evaluation of the budget is spent.
+    #[error("budget spent")]
+    BudgetSpent,
+    /// A cost as low as asked for was found.
+    #[error("target reached")]
+    TargetReached,
+    /// The user wants the program to end.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// What a run may spend and what ends it early.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Budget {
+    /// Evaluations of the problem; never exceeded by one.
+    pub evaluations: u64,
+    /// Ends the run when a cost this low is found.
+    pub target: Option<f64>,
+}
+
+/// Shared with whoever watches a run from outside.
+#[derive(Debug, Default)]
+pub struct Watch {
+    interrupted: AtomicBool,
+    evaluations: AtomicU64,
+}
+
+impl Watch {
+    /// Asks every run to stop at its next evaluation.
+    pub fn interrupt(&self) {
+        self.interrupted.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether somebody asked.
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupted.load(Ordering::Relaxed)
+    }
+
+    /// Evaluations made so far by all runs.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations.load(Ordering::Relaxed)
+    }
+
+    /// Takes note of evaluations, made or, for a run that ends early, not to be made.
+    pub fn add_evaluations(&self, count: u64) {
+        self.evaluations.fetch_add(count, Ordering::Relaxed);
+    }
+}
+
+/// The best point so far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Best {
+    /// The point.
+    pub x: Vec<f64>,
+    /// What was found there.
+    pub evaluation: Evaluation,
+}
+
+/// One row of a run's trace: an improvement, or the last evaluation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TracePoint {
+    /// Which evaluation, counted from one.
+    pub evaluation: u64,
+    /// Best so far: cost and violation.
+    pub best: Evaluation,
+    /// Time since the run began.
+    pub elapsed: Duration,
+}
+
+/// Evaluates a problem for an optimiser within a budget.
+pub struct Oracle<'a> {
+    problem: &'a dyn Problem,
+    budget: Budget,
+    watch: &'a Watch,
+    started: Instant,
+    in_problem: Duration,
+    evaluations: u64,
+    best: Option<Best>,
+    trace: Vec<TracePoint>,
+}
+
+impl<'a> Oracle<'a> {
+    /// An oracle that has spent nothing yet.
+    pub fn new(problem: &'a dyn Problem, budget: Budget, watch: &'a Watch) -> Self {
+        Self {
+            problem,
+            budget,
+            watch,
+            started: Instant::now(),
+            in_problem: Duration::ZERO,
+            evaluations: 0,
+            best: None,
+            trace: Vec::new(),
+        }
+    }
+
+    /// The problem's box.
+    pub fn bounds(&self) -> &'a Bounds {
+        self.problem.bounds()
+    }
+
+    /// Evaluations left.
+    pub fn remaining(&self) -> u64 {
+        self.budget.evaluations - self.evaluations
+    }
+
+    /// Evaluations made.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    /// Time spent inside the problem.
+    pub fn time_in_problem(&self) -> Duration {
+        self.in_problem
+    }
+
+    /// The best so far; a cost that is not a number is never best.
+    pub fn best(&self) -> Option<&Best> {
+        self.best.as_ref()
+    }
+
+    /// Evaluates one point.
+    pub fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, Stop> {
+        self.check()?;
+        let clock = Instant::now();
+        let evaluation = self.problem.evaluate(x);
+        self.in_problem += clock.elapsed();
+        self.record(x, evaluation);
+        self.watch.add_evaluations(1);
+        Ok(evaluation)
+    }
+
+    /// Evaluates many points; `out` has one place for each. Where the budget ends within them, the
+    /// first ones are evaluated and the run stops.
+    pub fn evaluate_batch(&mut self, points: &Points, out: &mut [Evaluation]) -> Result<(), Stop> {
+        self.check()?;
+        let affordable = usize::try_from(self.remaining()).unwrap_or(usize::MAX);
+        let cut = (affordable < points.len()).then(|| points.first(affordable));
+        let points = cut.as_ref().unwrap_or(points);
+        let clock = Instant::now();
+        self.problem.evaluate_batch(points, &mut out[..points.len()]);
+        self.in_problem += clock.elapsed();
+        for (x, &evaluation) in points.iter().zip(out.iter()) {
+            self.record(x, evaluation);
+            // A target met within the batch ends the count there, as if evaluated one by one.
+            if self.target_is_reached() {
+                break;
+            }
+        }
+        self.watch.add_evaluations(points.len() as u64);
+        if cut.is_some() { Err(Stop::BudgetSpent) } else { Ok(()) }
+    }
+
+    /// The improvements and the last evaluation, in order.
+    pub fn into_trace(mut self) -> Vec<TracePoint> {
+        if let (Some(last), Some(best)) = (self.trace.last(), &self.best)
+            && last.evaluation < self.evaluations
+        {
+            self.trace.push(TracePoint {
+                evaluation: self.evaluations,
+                best: best.evaluation,
+                elapsed: self.started.elapsed(),
+            });
+        }
+        self.trace
+    }
+
+    fn check(&self) -> Result<(), Stop> {
+        if self.watch.is_interrupted() {
+            Err(Stop::Interrupted)
+        } else if self.target_is_reached() {
+            Err(Stop::TargetReached)
+        } else if self.remaining() == 0 {
+            Err(Stop::BudgetSpent)
+        } else {
+            Ok(())
+        }
+    }
+
+    fn target_is_reached(&self) -> bool {
+        let best = self.best.as_ref().map(|b| b.evaluation.cost);
+        self.budget.target.is_some_and(|target| best.is_some_and(|cost| cost <= target))
+    }
+
+    fn record(&mut self, x: &[f64], evaluation: Evaluation) {
+        self.evaluations += 1;
+        let best = self.best.as_ref().map_or(f64::INFINITY, |b| b.evaluation.cost);
+        if evaluation.cost < best {
+            self.best = Some(Best { x: x.to_vec(), evaluation });
+            self.trace.push(TracePoint {
+                evaluation: self.evaluations,
+                best: evaluation,
+                elapsed: self.started.elapsed(),
+            });
+        }
+    }
+}

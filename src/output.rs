@@ -1,0 +1,44 @@
+//! Writing files whole or not at all.
+
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+/// A file or folder that the system would not let us have.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot {action} {}", .path.display())]
+pub struct FileError {
+    /// What was tried.
+    pub action: &'static str,
+    /// With which path.
+    pub path: PathBuf,
+    /// What came of it.
+    pub source: io::Error,
+}
+
+/// Writes to a temporary file in the same folder, flushes it to the disk and renames it.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    let error = |source| FileError { action: "write", path: path.to_owned(), source };
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut file = readable_by_all().tempfile_in(folder).map_err(error)?;
+    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(error)?;
+    file.persist(path).map_err(|e| error(e.error))?;
+    Ok(())
+}
+
+/// Makes a folder and those above it.
+pub fn create_folder(path: &Path) -> Result<(), FileError> {
+    fs::create_dir_all(path)
+        .map_err(|source| FileError { action: "create", path: path.to_owned(), source })
+}
+
+/// Temporary files are private by default; a result is for everybody whom the umask lets read.
+fn readable_by_all() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder
+}

@@ -1,0 +1,35 @@
+//! ZYX Euler angles of the base over time: the paper's Figure 6.
+
+use super::figure::Figure;
+use super::joint_angles::extent;
+use super::panel::{Axis, Line, Panel};
+use super::style::Stroke;
+use crate::problem::Motion;
+use crate::task::Task;
+
+/// ZYX Euler angles of the base over time; dotted lines are the goal's.
+pub fn base_attitude(motion: &Motion, task: &Task) -> Figure {
+    let end = motion.time.last().copied().unwrap_or(1.0);
+    let (roll, pitch, yaw) = task.goal.base.euler_angles();
+    let mut goals = [yaw, pitch, roll].map(f64::to_degrees).to_vec();
+    goals.dedup();
+    let goal = |angle: f64| Line {
+        name: String::new(),
+        stroke: Stroke::reference(),
+        points: vec![[0.0, angle], [end, angle]],
+    };
+    let mut lines: Vec<Line> = goals.into_iter().map(goal).collect();
+    let angles = motion.base_zyx();
+    for (k, name) in ["yaw ψ", "pitch ϑ", "roll φ"].into_iter().enumerate() {
+        let values = angles.iter().map(|zyx| zyx[k].to_degrees());
+        let points = motion.time.iter().zip(values).map(|(t, v)| [*t, v]).collect();
+        lines.push(Line { name: name.to_owned(), stroke: Stroke::of(k), points });
+    }
+    let panel = Panel {
+        x: Axis::linear("time t [s]", [0.0, end], false),
+        y: Axis::linear("base Euler angle [°]", extent(&lines), true),
+        bands: Vec::new(),
+        lines,
+    };
+    Figure { panels: vec![panel], panel_height: 54.0 }
+}
