@@ -88,7 +88,12 @@ impl Document {
     }
 
     /// An error at a place in the text; the place of a default is the text's beginning.
-    pub fn error_at(&self, span: Range<usize>, message: impl Display, help: Option<String>) -> InputError {
+    pub fn error_at(
+        &self,
+        span: Range<usize>,
+        message: impl Display,
+        help: Option<String>,
+    ) -> InputError {
         // A long table is pointed at by its first line only.
         let first_line = self.text[span.clone()].lines().next().map_or(0, str::len);
         let name = self.path.display().to_string();

@@ -28,8 +28,11 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 
 /// Makes a folder and those above it.
 pub fn create_folder(path: &Path) -> Result<(), FileError> {
-    fs::create_dir_all(path)
-        .map_err(|source| FileError { action: "create", path: path.to_owned(), source })
+    fs::create_dir_all(path).map_err(|source| FileError {
+        action: "create",
+        path: path.to_owned(),
+        source,
+    })
 }
 
 /// Temporary files are private by default; a result is for everybody whom the umask lets read.

@@ -77,6 +77,7 @@ mod tests {
     /// Lanes on both sides of the switch at once.
     #[test]
     fn lanes_agree_with_scalars() {
+        use nalgebra::SimdValue as _;
         use simba::simd::WideF64x4;
         let angles = [0.0, 1e-6, 0.7, 2.5];
         let lane = WideF64x4::from(angles);

@@ -1,24 +1,283 @@
 //! Promises about the physics that hold for every state and every motion.
+
+use driftless::attitude::net_rotation;
 use driftless::input::Document;
 use driftless::momentum::{base_twist, total_momentum};
-use driftless::problem::{Reorientation, TaskFile};
+use driftless::problem::{
+    Accuracy, Boxes, Formulated, Formulation, Problem, Reorientation, TaskFile,
+};
+use driftless::robot::Robot;
+use driftless::scalar::Scalar;
+use driftless::trajectory::Peaks;
+use nalgebra::{Quaternion, SimdValue as _, UnitQuaternion};
 use proptest::prelude::*;
+use simba::simd::WideF64x4;
 
-fn paper() -> Reorientation {
-    let document = Document::embedded("empty", "");
-    TaskFile::read(&document).unwrap().build(&document).unwrap().0
+fn paper() -> (Reorientation, Boxes) {
+    let document = TaskFile::paper();
+    TaskFile::read(&document).unwrap().build(&document).unwrap()
+}
+
+/// A serial arm with as many joints as there are rows of seven numbers from −1 to 1.
+fn robot(joints: &[[f64; 7]]) -> Robot {
+    let mut text = "name = 'drawn'\n[base]\nmass = 80\nmount = [0.4, -0.2, 0.3]\n\
+         mount_zyx_deg = [20, -50, 70]\n\
+         inertia = { xx = 9, yy = 11, zz = 7, xy = 0.3, xz = -0.2, yz = 0.4 }\n"
+        .to_owned();
+    for [a, d, alpha, offset, x, y, z] in joints {
+        text += &format!(
+            "[[joint]]\ndh = {{ a = {a}, d = {d}, alpha_deg = {}, offset_deg = {} }}\n\
+             range_deg = [-180, 180]\nmass = {}\ncentre_of_mass = [{x}, {y}, {z}]\n\
+             inertia = {{ xx = 0.5, yy = 0.6, zz = 0.4, xy = {}, xz = {}, yz = {} }}\n",
+            180.0 * alpha,
+            180.0 * offset,
+            5.0 + 4.0 * x,
+            0.1 * x,
+            0.1 * y,
+            0.1 * z,
+        );
+    }
+    Robot::from_document(&Document::embedded("drawn.toml", &text)).unwrap()
+}
+
+/// Coefficients within the default box of the two-term family, from numbers from −1 to 1.
+fn in_box(unit: &[f64]) -> Vec<f64> {
+    let widths = paper().1.coefficient;
+    unit.iter().zip(widths.iter().cycle()).map(|(u, width)| u * width).collect()
+}
+
+/// The base's rotation by Runge–Kutta in time, along eq. 11's polynomial in powers of `t` with the
+/// coefficients of eq. 24: nothing shared with the library but the base's rate.
+fn rotation_in_time(problem: &Reorientation, alpha: &[f64], t_f: f64) -> UnitQuaternion<f64> {
+    let task = problem.task();
+    let joints = task.robot.joints.iter().enumerate().map(|(i, joint)| {
+        let [low, high] = joint.range;
+        let (d1, d2) = ((high - low) / 2.0, f64::midpoint(high, low));
+        let s0 = ((task.start.joints[i] - d2) / d1).asin();
+        let delta = ((task.goal.joints[i] - d2) / d1).asin() - s0;
+        let (p6, p7) = (alpha[i] * t_f.powi(6), alpha[i + 6] * t_f.powi(7));
+        let a3 = (10.0 * delta - (3.0 * p7 + p6)) / t_f.powi(3);
+        let a4 = (-15.0 * delta + 8.0 * p7 + 3.0 * p6) / t_f.powi(4);
+        let a5 = (6.0 * delta - (6.0 * p7 + 3.0 * p6)) / t_f.powi(5);
+        (d1, d2, [s0, 0.0, 0.0, a3, a4, a5, alpha[i], alpha[i + 6]])
+    });
+    let joints: Vec<_> = joints.collect();
+    let omega = |t: f64| {
+        let (mut angles, mut rates) = (Vec::new(), Vec::new());
+        for (d1, d2, a) in &joints {
+            let s: f64 = a.iter().rev().fold(0.0, |sum, c| sum * t + c);
+            let slope = (1..8).rev().fold(0.0, |sum, j| sum * t + j as f64 * a[j]);
+            angles.push(d1 * s.sin() + d2);
+            rates.push(d1 * s.cos() * slope);
+        }
+        base_twist(&task.robot, &angles, &rates).angular
+    };
+    let steps = 4000;
+    let h = t_f / f64::from(steps);
+    let rate = |q: Quaternion<f64>, t: f64| q * Quaternion::from_imag(omega(t) * 0.5);
+    let mut q = Quaternion::identity();
+    for i in 0..steps {
+        let t = f64::from(i) * h;
+        let k1 = rate(q, t);
+        let k2 = rate(q + k1 * (h / 2.0), t + h / 2.0);
+        let k3 = rate(q + k2 * (h / 2.0), t + h / 2.0);
+        let k4 = rate(q + k3 * h, t + h);
+        q += (k1 + k2 * 2.0 + k3 * 2.0 + k4) * (h / 6.0);
+    }
+    UnitQuaternion::new_normalize(q)
+}
+
+fn rows() -> impl Strategy<Value = Vec<[f64; 7]>> {
+    prop::collection::vec(prop::array::uniform7(-1.0..1.0), 1..9)
+}
+
+/// No files of earlier failures: a failure prints the case, which then becomes a test of its own.
+fn cases(cases: u32) -> ProptestConfig {
+    ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
 }
 
 proptest! {
+    #![proptest_config(cases(200))]
+
     #[test]
     fn total_momentum_is_zero(
         angles in prop::collection::vec(-5.0..5.0, 6),
         rates in prop::collection::vec(-2.0..2.0, 6),
     ) {
-        let robot = &paper().task().robot.clone();
-        let base = base_twist(robot, &angles, &rates);
-        let (linear, angular) = total_momentum(robot, &angles, &rates, &base);
+        let robot = &paper().0.task().robot.clone();
+        let (linear, angular) =
+            total_momentum(robot, &angles, &rates, &base_twist(robot, &angles, &rates));
         prop_assert!(linear.norm() < 1e-10, "{linear}");
         prop_assert!(angular.norm() < 1e-10, "{angular}");
+    }
+
+    #[test]
+    fn total_momentum_is_zero_for_any_arm(
+        rows in rows(),
+        angles in prop::collection::vec(-5.0..5.0, 8),
+        rates in prop::collection::vec(-2.0..2.0, 8),
+    ) {
+        let robot = robot(&rows);
+        let (angles, rates) = (&angles[..rows.len()], &rates[..rows.len()]);
+        let (linear, angular) =
+            total_momentum(&robot, angles, rates, &base_twist(&robot, angles, rates));
+        prop_assert!(linear.norm() < 1e-10, "{linear}");
+        prop_assert!(angular.norm() < 1e-10, "{angular}");
+    }
+
+    /// Four states at once, one a lane, agree with one at a time.
+    #[test]
+    fn lanes_agree_with_scalars(
+        states in prop::array::uniform4(prop::collection::vec(-3.0..3.0, 12)),
+    ) {
+        let robot = &paper().0.task().robot.clone();
+        let lanes: Vec<WideF64x4> =
+            (0..12).map(|i| WideF64x4::from([0, 1, 2, 3].map(|lane| states[lane][i]))).collect();
+        let wide = base_twist(robot, &lanes[..6], &lanes[6..]);
+        for (lane, state) in states.iter().enumerate() {
+            let scalar = base_twist(robot, &state[..6], &state[6..]);
+            for k in 0..3 {
+                prop_assert!((wide.angular[k].extract(lane) - scalar.angular[k]).abs() < 1e-12);
+                prop_assert!((wide.linear[k].extract(lane) - scalar.linear[k]).abs() < 1e-12);
+            }
+        }
+        prop_assert_eq!(WideF64x4::of(2.5).extract(3), 2.5);
+    }
+
+    /// Eq. 15, for families of any number of terms.
+    #[test]
+    fn paths_start_and_end_at_rest(
+        unit in prop::collection::vec(-1.0..1.0, 48),
+        terms in 1_usize..=8,
+    ) {
+        let task = paper().0.task().clone();
+        let problem = Reorientation::new(task.clone(), terms, Accuracy::FINE);
+        let path = problem.family().path::<f64>(&unit[..problem.family().dimension()]);
+        for (i, joint) in path.joints().enumerate() {
+            let (start, end) = (joint.derivatives(0.0), joint.derivatives(1.0));
+            prop_assert!((start[0] - task.start.joints[i]).abs() < 1e-10);
+            prop_assert!((end[0] - task.goal.joints[i]).abs() < 1e-10);
+            for k in [1, 2] {
+                prop_assert!(start[k].abs() < 1e-10 && end[k].abs() < 1e-10);
+            }
+        }
+    }
+
+    /// Each derivative against central differences of the one below, extrapolated to fourth order.
+    #[test]
+    fn derivatives_agree_with_differences(
+        unit in prop::collection::vec(-1.0..1.0, 12),
+        tau in 0.01..0.99,
+    ) {
+        let problem = paper().0;
+        let coefficients = in_box(&unit);
+        let path = problem.family().path(&coefficients);
+        let h = 1e-3;
+        for joint in path.joints() {
+            let exact = joint.derivatives(tau);
+            let at = |step: f64| joint.derivatives(tau + step);
+            let (p1, m1, p2, m2) = (at(h), at(-h), at(2.0 * h), at(-2.0 * h));
+            for k in 1..5 {
+                let difference =
+                    (8.0 * (p1[k - 1] - m1[k - 1]) - (p2[k - 1] - m2[k - 1])) / (12.0 * h);
+                let scale = 20_f64.powi(k as i32);
+                prop_assert!((difference - exact[k]).abs() < 1e-7 * scale, "order {k}");
+            }
+        }
+    }
+
+    /// No denser look finds a higher peak, and none is invented.
+    #[test]
+    fn peaks_are_those_of_a_dense_look(unit in prop::collection::vec(-1.0..1.0, 12)) {
+        let problem = paper().0;
+        let coefficients = in_box(&unit);
+        let path = problem.family().path(&coefficients);
+        let search = problem.accuracy().peak_intervals;
+        let looks = [(search, 1e-6), (Accuracy::FINE.peak_intervals, 1e-12)];
+        for (joint, i) in path.joints().zip(0..) {
+            let samples: Vec<_> =
+                (0..=20_000).map(|i| joint.derivatives(f64::from(i) / 20_000.0)).collect();
+            for k in 0..3 {
+                let dense = samples.iter().map(|s| s[k + 1].abs()).fold(0.0, f64::max);
+                for (intervals, missed) in looks {
+                    let peak = Peaks::of(&path, intervals).0[i][k];
+                    let error = (peak.value - dense) / dense;
+                    prop_assert!((-missed..1e-6).contains(&error), "order {}: {error:e}", k + 1);
+                    let there = joint.derivatives(peak.tau)[k + 1].abs();
+                    prop_assert!((there - peak.value).abs() < 1e-12 * dense);
+                }
+            }
+        }
+    }
+
+    /// The same motion in every formulation has the same cost.
+    #[test]
+    fn formulations_agree(unit in prop::collection::vec(-1.0..1.0, 12), stretch in 0.7..1.5) {
+        let (problem, boxes) = paper();
+        let problem = std::sync::Arc::new(problem);
+        let coefficients = in_box(&unit);
+        let shortest = problem.assess(&coefficients, None).duration;
+        let cost = |formulation, duration| {
+            let formulated = Formulated::new(formulation, problem.clone(), &boxes);
+            formulated.evaluate(&formulated.encode(&coefficients, duration)).cost
+        };
+        let free = cost(Formulation::TimeFree, shortest);
+        prop_assert!((cost(Formulation::Scaled, shortest) - free).abs() < 1e-9);
+        prop_assert!((cost(Formulation::Raw, shortest) - free).abs() < 1e-9);
+        let duration = stretch * shortest;
+        let (scaled, raw) = (cost(Formulation::Scaled, duration), cost(Formulation::Raw, duration));
+        prop_assert!((scaled - raw).abs() < 1e-9 * scaled.max(1.0), "{scaled} {raw}");
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(12))]
+
+    /// The base ends the same however long the motion takes, and as eq. 11 in time says it does.
+    #[test]
+    fn the_final_attitude_does_not_depend_on_timing(
+        unit in prop::collection::vec(-1.0..1.0, 12),
+        t_f in 2.0..20.0,
+    ) {
+        let problem = paper().0;
+        let coefficients = in_box(&unit);
+        let path = problem.family().path(&coefficients);
+        let robot = &problem.task().robot;
+        let ours = net_rotation(robot, &path, Accuracy::FINE.attitude_steps);
+        for t_f in [t_f, 2.0 * t_f] {
+            let alpha = problem.family().to_alpha(&coefficients, t_f);
+            let theirs = rotation_in_time(&problem, &alpha, t_f);
+            prop_assert!(ours.angle_to(&theirs) < 1e-9, "{t_f} s: {}", ours.angle_to(&theirs));
+        }
+    }
+}
+
+/// The default boxes hold the published solution and the best known one. The latter's coefficients
+/// are from IPOPT 3.14 on a grid of 601 points, started at random.
+#[test]
+fn default_boxes_hold_the_solutions_of_interest() {
+    let best = [
+        [0.518_196, 0.034_236],
+        [-0.189_152, -0.080_074],
+        [-0.277_630, 0.117_767],
+        [-0.588_259, 0.002_780],
+        [0.036_600, 0.076_002],
+        [-0.017_762, -0.176_705],
+    ];
+    let best: Vec<f64> = best.concat();
+    let (problem, boxes) = paper();
+    let replay = driftless::problem::ReplayFile::paper();
+    let published = driftless::problem::ReplayFile::read(&replay).unwrap().build(&replay).unwrap();
+    let fine = problem.with_accuracy(Accuracy::FINE).assess(&best, None);
+    assert!((fine.duration - 7.8185).abs() < 1e-3 && fine.residual() < 1e-4, "{fine:?}");
+    let problem = std::sync::Arc::new(problem);
+    for formulation in Formulation::ALL {
+        let formulated = Formulated::new(formulation, problem.clone(), &boxes);
+        for (coefficients, duration) in
+            [(&best, 7.8185), (&published.coefficients, published.duration)]
+        {
+            let x = formulated.encode(coefficients, duration);
+            assert!(formulated.bounds().contains(&x), "{formulation:?}");
+        }
     }
 }

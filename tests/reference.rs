@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use driftless::attitude::net_rotation;
-use driftless::input::Document;
 use driftless::kinematics::tool;
 use driftless::momentum::{base_map, generalised_jacobian};
 use driftless::problem::{Accuracy, Reorientation, TaskFile};
@@ -48,7 +47,7 @@ fn reference() -> Reference {
 }
 
 fn paper() -> Reorientation {
-    let document = Document::embedded("empty", "");
+    let document = TaskFile::paper();
     TaskFile::read(&document).unwrap().build(&document).unwrap().0
 }
 
@@ -82,7 +81,8 @@ fn kinematics_and_momentum_to_1e_12() {
 
 #[test]
 fn start_attitude() {
-    let difference = task().start.base.into_inner() - quaternion(reference().start_quaternion).into_inner();
+    let difference =
+        task().start.base.into_inner() - quaternion(reference().start_quaternion).into_inner();
     assert!(difference.norm() < 1e-15);
 }
 
@@ -126,7 +126,11 @@ fn peaks_to_1e_6_relative() {
             let Peaks(peaks) = Peaks::of(&path, intervals);
             for (ours, theirs) in peaks.iter().zip(expected.clone()) {
                 for (a, b) in ours.iter().zip(theirs) {
-                    assert!((a.value - b).abs() < 1e-6 * b, "{} {intervals}: {a:?} {b}", shape.name);
+                    assert!(
+                        (a.value - b).abs() < 1e-6 * b,
+                        "{} {intervals}: {a:?} {b}",
+                        shape.name
+                    );
                 }
             }
         }

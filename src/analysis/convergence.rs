@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use polars::prelude::*;
 
-use super::runs::runs;
+use super::runs::{Run, groups, runs};
 use super::summary::quantile;
 
 /// Quartiles of the best cost so far over the seeds of one optimiser.
@@ -29,29 +29,16 @@ const POINTS: usize = 200;
 /// run that ended early keeps the best it had.
 pub fn convergence(runs_table: &DataFrame, traces: &DataFrame) -> PolarsResult<Vec<Curve>> {
     let steps = steps(traces)?;
-    let mut groups: Vec<(Curve, Vec<&[(f64, f64)]>, u64)> = Vec::new();
-    for run in runs(runs_table)? {
-        let trace = steps.get(&run.key).map_or(&[][..], Vec::as_slice);
-        let same = |g: &&mut (Curve, _, _)| g.0.optimiser == run.optimiser && g.0.instance == run.instance;
-        if let Some((_, traces, budget)) = groups.iter_mut().find(same) {
-            traces.push(trace);
-            *budget = (*budget).min(run.budget);
-        } else {
-            let curve = Curve {
-                optimiser: run.optimiser,
-                instance: run.instance,
-                evaluations: Vec::new(),
-                quartiles: Vec::new(),
-            };
-            groups.push((curve, vec![trace], run.budget));
-        }
-    }
-    Ok(groups.into_iter().map(|(curve, traces, budget)| filled(curve, &traces, budget)).collect())
+    let runs = runs(runs_table)?;
+    Ok(groups(&runs).iter().map(|group| curve(group, &steps)).collect())
 }
 
+/// The rows of a run's trace: evaluation and best cost.
+type Trace = Vec<(f64, f64)>;
+
 /// Evaluation and best cost of every row of the traces, by run.
-fn steps(traces: &DataFrame) -> PolarsResult<HashMap<String, Vec<(f64, f64)>>> {
-    let mut steps: HashMap<String, Vec<(f64, f64)>> = HashMap::new();
+fn steps(traces: &DataFrame) -> PolarsResult<HashMap<String, Trace>> {
+    let mut steps: HashMap<String, Trace> = HashMap::new();
     if traces.height() == 0 {
         return Ok(steps);
     }
@@ -66,18 +53,25 @@ fn steps(traces: &DataFrame) -> PolarsResult<HashMap<String, Vec<(f64, f64)>>> {
     Ok(steps)
 }
 
-fn filled(mut curve: Curve, traces: &[&[(f64, f64)]], budget: u64) -> Curve {
+fn curve(group: &[&Run], steps: &HashMap<String, Trace>) -> Curve {
+    let budget = group.iter().map(|run| run.budget).min().unwrap_or(1);
+    let traces = group.iter().map(|run| steps.get(&run.key).map_or(&[][..], Vec::as_slice));
+    let traces: Vec<_> = traces.collect();
     let last = (budget as f64).ln();
-    let mut places: Vec<f64> =
+    let mut evaluations: Vec<f64> =
         (0..POINTS).map(|i| (last * i as f64 / (POINTS - 1) as f64).exp().round()).collect();
-    places.dedup();
-    for place in places {
+    evaluations.dedup();
+    let quartiles = evaluations.iter().map(|&place| {
         let mut costs: Vec<f64> = traces.iter().map(|trace| best_at(trace, place)).collect();
         costs.sort_by(f64::total_cmp);
-        curve.evaluations.push(place);
-        curve.quartiles.push([0.25, 0.5, 0.75].map(|q| quantile(&costs, q)));
+        [0.25, 0.5, 0.75].map(|q| quantile(&costs, q))
+    });
+    Curve {
+        optimiser: group[0].optimiser.clone(),
+        instance: group[0].instance.clone(),
+        quartiles: quartiles.collect(),
+        evaluations,
     }
-    curve
 }
 
 /// Best cost after so many evaluations; infinite before the first.

@@ -96,3 +96,17 @@ pub fn best_run(frame: &DataFrame) -> PolarsResult<Option<BestRun>> {
         coefficients,
     }))
 }
+
+/// Groups runs by instance and optimiser, in the order of their first row.
+pub(super) fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
+    let mut groups: Vec<Vec<&Run>> = Vec::new();
+    for run in runs {
+        let fits =
+            |g: &&mut Vec<&Run>| g[0].optimiser == run.optimiser && g[0].instance == run.instance;
+        match groups.iter_mut().find(fits) {
+            Some(group) => group.push(run),
+            None => groups.push(vec![run]),
+        }
+    }
+    groups
+}

@@ -2,20 +2,7 @@
 
 use polars::prelude::*;
 
-use super::runs::{Run, runs};
-
-/// Groups runs by instance and optimiser, in the order of their first row.
-fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
-    let mut groups: Vec<Vec<&Run>> = Vec::new();
-    for run in runs {
-        let same = |g: &&mut Vec<&Run>| g[0].optimiser == run.optimiser && g[0].instance == run.instance;
-        match groups.iter_mut().find(same) {
-            Some(group) => group.push(run),
-            None => groups.push(vec![run]),
-        }
-    }
-    groups
-}
+use super::runs::{Run, groups, runs};
 
 /// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7), of
 /// sorted values; an infinite neighbour makes it infinite.

@@ -3,7 +3,6 @@
 use clap::Args;
 
 use super::CliError;
-use crate::input::Document;
 use crate::optimiser::Settings;
 use crate::problem::{Boxes, Formulated, Formulation, Problem as _, TaskFile};
 use crate::robot::Robot;
@@ -28,7 +27,11 @@ impl List {
         for name in Robot::embedded_names() {
             if let Some(document) = Robot::embedded(name) {
                 let robot = Robot::from_document(&document)?;
-                println!("\n  {name}: {} joints, {:.1} kg", robot.joint_count(), robot.total_mass());
+                println!(
+                    "\n  {name}: {} joints, {:.1} kg",
+                    robot.joint_count(),
+                    robot.total_mass()
+                );
             }
         }
         Ok(())
@@ -37,7 +40,7 @@ impl List {
 
 /// The formulations of the paper's task with the boxes that are searched.
 fn problems() -> Result<(), CliError> {
-    let document = Document::embedded("the paper's task", "");
+    let document = TaskFile::paper();
     let (problem, boxes) = TaskFile::read(&document)?.build(&document)?;
     let problem = std::sync::Arc::new(problem);
     println!("\nproblems: the reorientation task in these formulations");
@@ -65,6 +68,8 @@ fn variables(formulation: Formulation, boxes: &Boxes) -> String {
             format!("{}, {duration}", each.join(", "))
         }
         Formulation::Scaled => format!("{}, {duration}", coefficients()),
-        Formulation::TimeFree => format!("{}; t_f is the shortest within the limits", coefficients()),
+        Formulation::TimeFree => {
+            format!("{}; t_f is the shortest within the limits", coefficients())
+        }
     }
 }

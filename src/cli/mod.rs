@@ -129,7 +129,10 @@ pub fn main() -> ExitCode {
 }
 
 /// The file named, or a text that comes with the program.
-fn read_or(file: Option<&Path>, embedded: impl FnOnce() -> Document) -> Result<Document, InputError> {
+fn read_or(
+    file: Option<&Path>,
+    embedded: impl FnOnce() -> Document,
+) -> Result<Document, InputError> {
     file.map_or_else(|| Ok(embedded()), Document::read)
 }
 

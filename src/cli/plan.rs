@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::motion::{MotionFiles, PeaksDeg, Told};
 use super::progress::Bar;
 use super::{CliError, read_or, shown, warn_of, watch};
-use crate::input::{Document, nearest};
+use crate::input::nearest;
 use crate::optimiser::Settings;
 use crate::oracle::{Budget, Oracle, Rng, Stop};
 use crate::problem::{Accuracy, Assessment, Formulated, TaskFile};
@@ -74,16 +74,24 @@ impl Plan {
     pub(super) fn execute(self) -> Result<(), CliError> {
         self.files.check()?;
         let settings = find_optimiser(&self.optimiser)?;
-        let document = read_or(self.file.as_deref(), || Document::embedded("the paper's task", ""))?;
+        let document = read_or(self.file.as_deref(), TaskFile::paper)?;
         let (problem, boxes) = TaskFile::read(&document)?.build(&document)?;
         warn_of(&problem.task().robot);
-        let found = self.search(&settings, Formulated::new(settings.formulation(), Arc::new(problem), &boxes))?;
+        let found = self.search(
+            &settings,
+            Formulated::new(settings.formulation(), Arc::new(problem), &boxes),
+        )?;
         if self.json {
             println!("{}", self.json(&found));
         } else {
             let problem = found.problem.task();
             let told = Told { problem, assessment: &found.assessment };
-            println!("{} by {}, seed {}", shown(self.file.as_ref(), "the paper's task"), self.optimiser, self.seed);
+            println!(
+                "{} by {}, seed {}",
+                shown(self.file.as_ref(), "the paper's task"),
+                self.optimiser,
+                self.seed
+            );
             print!("{told}");
             println!("  {} evaluations in {:.2} s", found.evaluations, found.seconds);
         }

@@ -12,7 +12,7 @@ use crate::oracle::Watch;
 
 /// Shows how many evaluations of all are done, until dropped.
 pub(super) struct Bar {
-    bar: ProgressBar,
+    display: ProgressBar,
     done: Arc<AtomicBool>,
     painter: Option<JoinHandle<()>>,
 }
@@ -20,7 +20,8 @@ pub(super) struct Bar {
 impl Bar {
     pub(super) fn new(evaluations: u64, watch: Arc<Watch>) -> Self {
         let bar = ProgressBar::new(evaluations);
-        let template = "{bar:40} {percent:>3} %  {human_pos} of {human_len} evaluations, {eta} left {msg}";
+        let template =
+            "{bar:40} {percent:>3} %  {human_pos} of {human_len} evaluations, {eta} left {msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
@@ -34,13 +35,13 @@ impl Bar {
                 }
             })
         });
-        Self { bar, done, painter }
+        Self { display: bar, done, painter }
     }
 
     /// Shows a line: above the bar on a terminal, by itself elsewhere.
     pub(super) fn line(&self, line: &str) {
         if self.painter.is_some() {
-            self.bar.println(line);
+            self.display.println(line);
         } else {
             eprintln!("{line}");
         }
@@ -54,6 +55,6 @@ impl Drop for Bar {
             // A painter that panicked has nothing more to paint.
             let _ = painter.join();
         }
-        self.bar.finish_and_clear();
+        self.display.finish_and_clear();
     }
 }

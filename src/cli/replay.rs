@@ -58,7 +58,10 @@ impl Replay {
         if self.json {
             println!("{}", json(&published));
         } else {
-            println!("{}", shown(self.file.as_ref(), "the solution published by Xiao et al. (2023)"));
+            println!(
+                "{}",
+                shown(self.file.as_ref(), "the solution published by Xiao et al. (2023)")
+            );
             if let Some(claim) = published.cost {
                 println!("claimed: J {claim}, duration {} s", published.duration);
             }

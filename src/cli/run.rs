@@ -69,7 +69,10 @@ impl Run {
 
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
         let store = Store::open(&folder)?;
-        write_file(&folder.join("experiment.toml"), toml::to_string(&file).unwrap_or_default().as_bytes())?;
+        write_file(
+            &folder.join("experiment.toml"),
+            toml::to_string(&file).unwrap_or_default().as_bytes(),
+        )?;
         if self.fresh {
             store.remove(plan.runs.iter().map(|run| &run.key))?;
         }

@@ -8,6 +8,6 @@ mod store;
 
 pub use config::{BudgetTable, ExperimentFile, Sweep};
 pub use plan::{Entrant, Instance, Plan, RunSpec, Shard};
-pub use runner::{Progress, RunError, run};
 pub use record::{Record, Status};
+pub use runner::{Progress, RunError, run};
 pub use store::{Store, StoreError, write_table};

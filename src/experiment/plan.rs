@@ -107,7 +107,13 @@ impl Plan {
                 }));
             }
         }
-        Ok(Self { name: file.name.clone(), targets: file.targets.clone(), instances, optimisers, runs })
+        Ok(Self {
+            name: file.name.clone(),
+            targets: file.targets.clone(),
+            instances,
+            optimisers,
+            runs,
+        })
     }
 
     /// Only the runs of one shard.
@@ -151,7 +157,12 @@ fn instances(
         terms: toml::Spanned<usize>,
     }
     /// Every draft with every value of one list; a list without values leaves the drafts alone.
-    fn cross<T>(drafts: Vec<Draft>, name: &str, values: &[T], set: impl Fn(&mut Draft, &T) -> String) -> Vec<Draft> {
+    fn cross<T>(
+        drafts: Vec<Draft>,
+        name: &str,
+        values: &[T],
+        set: impl Fn(&mut Draft, &T) -> String,
+    ) -> Vec<Draft> {
         if values.is_empty() {
             return drafts;
         }

@@ -25,7 +25,9 @@ pub enum Status {
 
 impl Status {
     /// What to record; nothing for a run that the user interrupted.
-    pub(super) fn from_outcome(outcome: Result<Result<(), Stop>, Box<dyn Any + Send>>) -> Option<Self> {
+    pub(super) fn from_outcome(
+        outcome: Result<Result<(), Stop>, Box<dyn Any + Send>>,
+    ) -> Option<Self> {
         match outcome {
             Ok(Ok(())) => Some(Self::Finished),
             Ok(Err(Stop::BudgetSpent)) => Some(Self::BudgetSpent),

@@ -59,9 +59,8 @@ fn one(plan: &Plan, run: &RunSpec, watch: &Watch) -> Result<Option<Record>, Stor
     let optimiser = plan.optimisers[run.optimiser].settings.optimiser();
     let mut oracle = Oracle::new(&problem, run.budget, watch);
     let started = Instant::now();
-    let outcome = catch_unwind(AssertUnwindSafe(|| {
-        optimiser.minimise(&mut oracle, &mut Rng::new(run.seed))
-    }));
+    let outcome =
+        catch_unwind(AssertUnwindSafe(|| optimiser.minimise(&mut oracle, &mut Rng::new(run.seed))));
     let seconds = started.elapsed();
     let Some(status) = Status::from_outcome(outcome) else {
         return Ok(None);

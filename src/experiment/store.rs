@@ -86,7 +86,11 @@ impl Store {
     }
 
     /// One table of the named runs, in their order; runs that are not stored are left out.
-    pub fn read<'a>(&self, table: &str, keys: impl Iterator<Item = &'a str>) -> Result<DataFrame, StoreError> {
+    pub fn read<'a>(
+        &self,
+        table: &str,
+        keys: impl Iterator<Item = &'a str>,
+    ) -> Result<DataFrame, StoreError> {
         let mut all = DataFrame::empty();
         for key in keys.filter(|key| self.has(key)) {
             let path = self.path(table, key);

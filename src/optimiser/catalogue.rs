@@ -90,7 +90,8 @@ fn toml_value(value: &serde_json::Value) -> String {
     match value {
         serde_json::Value::Null => "none".to_owned(),
         serde_json::Value::Object(map) => {
-            let pairs: Vec<_> = map.iter().map(|(k, v)| format!("{k} = {}", toml_value(v))).collect();
+            let pairs: Vec<_> =
+                map.iter().map(|(k, v)| format!("{k} = {}", toml_value(v))).collect();
             format!("{{ {} }}", pairs.join(", "))
         }
         other => other.to_string(),

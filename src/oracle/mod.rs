@@ -81,6 +81,7 @@ pub struct TracePoint {
 }
 
 /// Evaluates a problem for an optimiser within a budget.
+#[expect(missing_debug_implementations, reason = "a problem need not be printable")]
 pub struct Oracle<'a> {
     problem: &'a dyn Problem,
     budget: Budget,

@@ -1,7 +1,7 @@
 //! ZYX Euler angles of the base over time: the paper's Figure 6.
 
 use super::figure::Figure;
-use super::joint_angles::extent;
+use super::joint_angles::{MARGIN, extent};
 use super::panel::{Axis, Line, Panel};
 use super::style::Stroke;
 use crate::problem::Motion;
@@ -26,8 +26,8 @@ pub fn base_attitude(motion: &Motion, task: &Task) -> Figure {
         lines.push(Line { name: name.to_owned(), stroke: Stroke::of(k), points });
     }
     let panel = Panel {
-        x: Axis::linear("time t [s]", [0.0, end], false),
-        y: Axis::linear("base Euler angle [°]", extent(&lines), true),
+        x: Axis::linear("time t [s]", [0.0, end], 0.0),
+        y: Axis::linear("base Euler angle [°]", extent(&lines), MARGIN),
         bands: Vec::new(),
         lines,
     };

@@ -1,6 +1,7 @@
 //! Best cost against evaluations.
 
 use super::figure::Figure;
+use super::joint_angles::MARGIN;
 use super::panel::{Axis, Band, Line, Panel};
 use super::style::Stroke;
 use crate::analysis::Curve;
@@ -9,8 +10,8 @@ use crate::analysis::Curve;
 pub fn convergence(curves: &[Curve]) -> Figure {
     let many = curves.iter().any(|curve| curve.instance != curves[0].instance);
     let mut panel = Panel {
-        x: Axis::logarithmic("evaluations", extent(curves, |c| c.evaluations.clone())),
-        y: Axis::logarithmic("best J", extent(curves, |c| c.quartiles.concat())),
+        x: Axis::logarithmic("evaluations", extent(curves, |c| c.evaluations.clone()), 0.0),
+        y: Axis::logarithmic("best J", extent(curves, |c| c.quartiles.concat()), MARGIN),
         bands: Vec::new(),
         lines: Vec::new(),
     };
@@ -23,7 +24,11 @@ pub fn convergence(curves: &[Curve]) -> Figure {
             points: places.iter().map(|(n, [low, _, high])| [**n, *low, *high]).collect(),
         });
         panel.lines.push(Line {
-            name: if many { format!("{} {}", curve.optimiser, curve.instance) } else { curve.optimiser.clone() },
+            name: if many {
+                format!("{} {}", curve.optimiser, curve.instance)
+            } else {
+                curve.optimiser.clone()
+            },
             stroke,
             points: places.iter().map(|(n, [_, median, _])| [**n, *median]).collect(),
         });

@@ -94,9 +94,8 @@ impl Figure {
     fn draw(&self) -> Result<String, PlotError> {
         LazyLock::force(&FONTS);
         let legend = self.legend();
-        let height = self.panel_height * self.panels.len() as f64
-            + LEGEND_LINE * legend.len() as f64
-            + 4.0;
+        let height =
+            self.panel_height * self.panels.len() as f64 + LEGEND_LINE * legend.len() as f64 + 4.0;
         let size = (units(COLUMN_MM).unsigned_abs(), units(height).unsigned_abs());
         let mut drawing = String::new();
         {
@@ -126,10 +125,11 @@ impl Figure {
         LazyLock::force(&FONTS);
         let mut rows: Vec<Vec<(i32, &Line)>> = Vec::new();
         let mut x = i32::MAX;
-        for line in self.panels.iter().take(1).flat_map(|p| &p.lines).filter(|l| !l.name.is_empty()) {
+        for line in self.panels.iter().take(1).flat_map(|p| &p.lines).filter(|l| !l.name.is_empty())
+        {
             let font = (FONT, text_size()).into_font();
             let text = font.box_size(&line.name).map_or(0, |(width, _)| width.cast_signed());
-            let width = units(8.0) + text;
+            let width = units(5.2) + text;
             if x.saturating_add(width) > units(COLUMN_MM) {
                 rows.push(Vec::new());
                 x = units(1.5);
@@ -137,7 +137,7 @@ impl Figure {
             if let Some(row) = rows.last_mut() {
                 row.push((x, line));
             }
-            x += width + units(2.2);
+            x += width + units(1.4);
         }
         rows
     }
@@ -152,7 +152,7 @@ fn draw_legend(
     for (i, row) in rows.iter().enumerate() {
         let y = units(LEGEND_LINE * (i as f64 + 0.6));
         for (x, line) in row {
-            let sample = [(*x, y), (x + units(6.5), y)];
+            let sample = [(*x, y), (x + units(4.4), y)];
             match line.stroke.dash {
                 None => area.draw(&PathElement::new(sample, line.stroke.shape()))?,
                 Some((dash, gap)) => {
@@ -160,7 +160,7 @@ fn draw_legend(
                     area.draw(&DashedPathElement::new(sample, units(dash), units(gap), style))?;
                 }
             }
-            area.draw_text(&line.name, &text, (x + units(7.4), y))?;
+            area.draw_text(&line.name, &text, (x + units(5.2), y))?;
         }
     }
     Ok(())

@@ -24,16 +24,20 @@ pub(super) fn joint_panel(motion: &Motion, order: usize, label: &str, limits: &[
         lines.push(Line { name: joint.name.clone(), stroke: Stroke::of(i), points });
     }
     Panel {
-        x: Axis::linear("time t [s]", [0.0, end], false),
-        y: Axis::linear(label, extent(&lines), true),
+        x: Axis::linear("time t [s]", [0.0, end], 0.0),
+        y: Axis::linear(label, extent(&lines), MARGIN),
         bands: Vec::new(),
         lines,
     }
 }
 
+/// Free share of a vertical axis above and below its lines.
+pub(super) const MARGIN: f64 = 0.04;
+
 /// The smallest and the largest ordinate of all lines.
 pub(super) fn extent(lines: &[Line]) -> [f64; 2] {
     let values = lines.iter().flat_map(|line| line.points.iter().map(|[_, y]| *y));
-    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], y| [l.min(y), h.max(y)]);
+    let [low, high] =
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], y| [l.min(y), h.max(y)]);
     if high - low > 1e-9 { [low, high] } else { [low - 1.0, high + 1.0] }
 }

@@ -49,14 +49,11 @@ pub(super) struct Band {
 }
 
 impl Axis {
-    /// A linear axis over `range`, widened to whole ticks if asked to.
-    pub(super) fn linear(label: &str, [low, high]: [f64; 2], widen: bool) -> Self {
+    /// A linear axis over a range and a little more on both sides, as a share of its width.
+    pub(super) fn linear(label: &str, [low, high]: [f64; 2], more: f64) -> Self {
+        let more = more * (high - low);
+        let (low, high) = (low - more, high + more);
         let step = tick_step(high - low);
-        let (low, high) = if widen {
-            ((low / step).floor() * step, (high / step).ceil() * step)
-        } else {
-            (low, high)
-        };
         let first = (low / step - 1e-9).ceil() as i64;
         let last = (high / step + 1e-9).floor() as i64;
         let decimals = (-step.log10().floor()).max(0.0) as usize;
@@ -69,8 +66,11 @@ impl Axis {
         }
     }
 
-    /// A logarithmic axis over a range of positive values.
-    pub(super) fn logarithmic(label: &str, [low, high]: [f64; 2]) -> Self {
+    /// A logarithmic axis over a range of positive values and a little more on both sides, as a
+    /// share of its width.
+    pub(super) fn logarithmic(label: &str, [low, high]: [f64; 2], more: f64) -> Self {
+        let more = (high / low).powf(more);
+        let (low, high) = (low / more, high * more);
         let decades = (high / low).log10();
         let mantissas: &[f64] = match decades {
             d if d < 0.7 => &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0],
@@ -146,7 +146,8 @@ fn number(value: f64, decimals: usize) -> String {
 fn power(mantissa: f64, exponent: i32) -> String {
     let value = mantissa * 10_f64.powi(exponent);
     if (-3..4).contains(&exponent) {
-        let decimals = (-exponent).max(0) as usize + usize::from(mantissa.fract() != 0.0 && exponent < 1);
+        let decimals =
+            (-exponent).max(0) as usize + usize::from(mantissa.fract() != 0.0 && exponent < 1);
         return number(value, decimals);
     }
     let raised = |c: char| match c.to_digit(10) {
@@ -159,8 +160,13 @@ fn power(mantissa: f64, exponent: i32) -> String {
 
 impl Panel {
     /// Draws the panel; `left` is the room for the vertical axis \[mm\].
-    pub(super) fn draw(&self, area: &Area<'_, '_>, left: f64, with_x_label: bool) -> Result<(), PlotError> {
-        let below = if with_x_label { 8.0 } else { 4.2 };
+    pub(super) fn draw(
+        &self,
+        area: &Area<'_, '_>,
+        left: f64,
+        with_x_label: bool,
+    ) -> Result<(), PlotError> {
+        let below = if with_x_label { 8.0 } else { 4.4 };
         let mut chart = ChartBuilder::on(area)
             .margin_top(units(1.2))
             .margin_right(units(2.0))
@@ -178,8 +184,10 @@ impl Panel {
         let (x_text, y_text) = (|v: &f64| self.x.tick_text(*v), |v: &f64| self.y.tick_text(*v));
         mesh.x_label_formatter(&x_text).y_label_formatter(&y_text).draw()?;
         for band in &self.bands {
-            let lower = band.points.iter().map(|[x, low, _]| (self.x.place(*x), self.y.place(*low)));
-            let upper = band.points.iter().map(|[x, _, high]| (self.x.place(*x), self.y.place(*high)));
+            let lower =
+                band.points.iter().map(|[x, low, _]| (self.x.place(*x), self.y.place(*low)));
+            let upper =
+                band.points.iter().map(|[x, _, high]| (self.x.place(*x), self.y.place(*high)));
             let outline: Vec<_> = lower.chain(upper.rev()).collect();
             chart.draw_series([Polygon::new(outline, band.colour.mix(0.18).filled())])?;
         }
@@ -208,11 +216,16 @@ impl Panel {
     }
 
     /// Axis labels, placed by hand: plotters would put them against the edge of the figure.
-    fn draw_labels(&self, area: &Area<'_, '_>, left: f64, with_x_label: bool) -> Result<(), PlotError> {
+    fn draw_labels(
+        &self,
+        area: &Area<'_, '_>,
+        left: f64,
+        with_x_label: bool,
+    ) -> Result<(), PlotError> {
         let (width, height) = area.dim_in_pixel();
         let (width, height) = (width.cast_signed(), height.cast_signed());
         let text = (FONT, text_size()).into_font().color(&INK);
-        let below = units(if with_x_label { 8.0 } else { 4.2 });
+        let below = units(if with_x_label { 8.0 } else { 4.4 });
         if with_x_label {
             let middle = units(left) + (width - units(left) - units(2.0)) / 2;
             let style = text.clone().pos(Pos::new(HPos::Center, VPos::Bottom));

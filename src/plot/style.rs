@@ -36,7 +36,7 @@ const COLOURS: [RGBColor; 7] = [
 ];
 
 /// Dash and gap \[mm\]; nothing is a solid line.
-const DASHES: [Option<(f64, f64)>; 3] = [None, Some((2.4, 0.9)), Some((0.8, 0.7))];
+const DASHES: [Option<(f64, f64)>; 3] = [None, Some((2.0, 0.8)), Some((0.7, 0.6))];
 
 /// Millimetres in drawing units.
 pub(super) fn units(mm: f64) -> i32 {
@@ -62,7 +62,7 @@ impl Stroke {
     /// The stroke of the `index`-th line of a chart.
     pub(super) fn of(index: usize) -> Self {
         let colour = COLOURS[index % COLOURS.len()];
-        Self { colour, width: 0.4, dash: DASHES[index % DASHES.len()] }
+        Self { colour, width: 0.32, dash: DASHES[index % DASHES.len()] }
     }
 
     /// A thin line that refers to something, such as a limit.

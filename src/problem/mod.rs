@@ -6,7 +6,7 @@ mod published;
 mod reorientation;
 mod settings;
 
-pub use formulation::{Formulation, Formulated};
+pub use formulation::{Formulated, Formulation};
 pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};
 pub use reorientation::{Accuracy, Assessment, Reorientation};
@@ -103,6 +103,24 @@ impl Points {
     pub fn first(&self, count: usize) -> Self {
         let values = self.values[..self.dimension * count].to_vec();
         Self { dimension: self.dimension, values }
+    }
+}
+
+impl<'a> IntoIterator for &'a Points {
+    type Item = &'a [f64];
+    type IntoIter = std::slice::ChunksExact<'a, f64>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl<'a> IntoIterator for &'a mut Points {
+    type Item = &'a mut [f64];
+    type IntoIter = std::slice::ChunksExactMut<'a, f64>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter_mut()
     }
 }
 

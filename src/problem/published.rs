@@ -144,7 +144,8 @@ impl ReplayFile {
                 for list in [alpha6, alpha7] {
                     let found = list.get_ref().0.len();
                     if found != joints {
-                        let message = format!("found {found} values, expected {joints}, one a joint");
+                        let message =
+                            format!("found {found} values, expected {joints}, one a joint");
                         return error(list.span(), message);
                     }
                 }
@@ -154,8 +155,9 @@ impl ReplayFile {
                 let rows = list.get_ref();
                 let terms = rows.first().map_or(0, |row| row.0.len());
                 if terms == 0 || rows.len() != joints || rows.iter().any(|r| r.0.len() != terms) {
-                    let message =
-                        format!("expected {joints} rows, one a joint, of equally many coefficients");
+                    let message = format!(
+                        "expected {joints} rows, one a joint, of equally many coefficients"
+                    );
                     return error(list.span(), message);
                 }
                 Ok(Shape::Coefficients(rows))

@@ -74,6 +74,11 @@ pub struct Boxes {
 }
 
 impl TaskFile {
+    /// The file that leaves everything to the paper.
+    pub fn paper() -> Document {
+        Document::embedded("the paper's task", "")
+    }
+
     /// Reads a file; what it leaves out is the paper's.
     pub fn read(document: &Document) -> Result<Self, InputError> {
         document.parse_over(&[DEFAULTS])

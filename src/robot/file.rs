@@ -29,7 +29,7 @@ impl Robot {
 }
 
 /// A robot file. Lengths in metres, masses in kilograms, inertias in kg m².
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RobotFile {
     name: String,
@@ -37,7 +37,7 @@ pub struct RobotFile {
     joint: Spanned<Vec<JointTable>>,
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BaseTable {
     #[serde(deserialize_with = "positive")]
@@ -49,7 +49,7 @@ struct BaseTable {
     mount_zyx_deg: [f64; 3],
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct JointTable {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -64,7 +64,7 @@ struct JointTable {
     inertia: Inertia,
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct DhTable {
     #[serde(default, deserialize_with = "finite")]
@@ -90,11 +90,11 @@ impl RobotFile {
 }
 
 /// A symmetric matrix that is known to be positive definite.
-#[derive(Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(try_from = "InertiaTable", into = "InertiaTable")]
 struct Inertia(Matrix3<f64>);
 
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct InertiaTable {
     #[serde(deserialize_with = "finite")]
@@ -144,7 +144,13 @@ impl From<RobotFile> for Robot {
             base: Body { mass: file.base.mass, inertia: file.base.inertia.0 },
             mount: file.base.mount.into(),
             mount_rotation: Rotation3::from_euler_angles(roll, pitch, yaw),
-            joints: file.joint.into_inner().into_iter().enumerate().map(|(i, j)| j.numbered(i + 1)).collect(),
+            joints: file
+                .joint
+                .into_inner()
+                .into_iter()
+                .enumerate()
+                .map(|(i, j)| j.numbered(i + 1))
+                .collect(),
         }
     }
 }

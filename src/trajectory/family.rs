@@ -4,10 +4,6 @@ use super::basis::Basis;
 use super::path::{Path, Span};
 use crate::scalar::Scalar;
 
-/// `(15x − 10x³ + 3x⁵)/16 + 1/2`: the phase that goes from 0 to 1 and rests at both ends to the
-/// second derivative, in powers of `x = 2τ − 1`.
-const STEP: [f64; 6] = [0.5, 15.0 / 16.0, 0.0, -10.0 / 16.0, 0.0, 3.0 / 16.0];
-
 /// All paths of the family between two configurations.
 ///
 /// `s = s_0 + (s_f − s_0) σ(τ) + 64 τ³(1−τ)³ Σ_k c_k P_k(2τ−1)`; the coefficients `c` select one.
@@ -47,21 +43,16 @@ impl Family {
     /// The path with these coefficients.
     pub fn path<T: Scalar>(&self, coefficients: &[T]) -> Path<'_, T> {
         debug_assert_eq!(coefficients.len(), self.dimension());
-        let length = 6 + self.terms();
-        let mut phases = vec![T::zero(); self.joints() * length];
-        let rows = phases.chunks_exact_mut(length).zip(coefficients.chunks_exact(self.terms()));
-        for (span, (phase, coefficients)) in self.spans.iter().zip(rows) {
-            for (power, &c) in phase.iter_mut().zip(&STEP) {
-                *power = T::of(c * span.phase_change);
-            }
-            phase[0] += T::of(span.start_phase);
-            for (bump, &coefficient) in self.basis.bumps().iter().zip(coefficients) {
-                for (power, &b) in phase.iter_mut().zip(bump) {
-                    *power += coefficient * T::of(b);
+        let terms = self.terms();
+        let mut free = vec![T::zero(); self.dimension()];
+        for (row, c) in free.chunks_exact_mut(terms).zip(coefficients.chunks_exact(terms)) {
+            for (polynomial, &coefficient) in self.basis.polynomials().iter().zip(c) {
+                for (power, &p) in row.iter_mut().zip(polynomial) {
+                    *power += coefficient * T::of(p);
                 }
             }
         }
-        Path::new(&self.spans, phases)
+        Path::new(&self.spans, free)
     }
 
     /// The paper's `α_6 … , α_7 …, …` \[s⁻⁶, s⁻⁷, …\], one block a power, one value a joint.

@@ -29,27 +29,26 @@ impl Span {
 #[derive(Debug, Clone)]
 pub struct Path<'a, T> {
     spans: &'a [Span],
-    /// Phase polynomials in powers of `x = 2τ − 1`, one row a joint.
-    phases: Vec<T>,
+    /// The polynomials of the free part in powers of `x = 2τ − 1`, one row a joint.
+    free: Vec<T>,
 }
 
 /// One joint's part of a path.
 #[derive(Debug, Clone, Copy)]
 pub struct JointPath<'a, T> {
     span: &'a Span,
-    phase: &'a [T],
+    free: &'a [T],
 }
 
 impl<'a, T: Scalar> Path<'a, T> {
-    pub(super) fn new(spans: &'a [Span], phases: Vec<T>) -> Self {
-        Self { spans, phases }
+    pub(super) fn new(spans: &'a [Span], free: Vec<T>) -> Self {
+        Self { spans, free }
     }
 
     /// The joints' parts, from the base outward.
     pub fn joints(&self) -> impl ExactSizeIterator<Item = JointPath<'_, T>> {
-        let length = self.phases.len() / self.spans.len();
-        let rows = self.phases.chunks_exact(length);
-        self.spans.iter().zip(rows).map(|(span, phase)| JointPath { span, phase })
+        let rows = self.free.chunks_exact(self.free.len() / self.spans.len());
+        self.spans.iter().zip(rows).map(|(span, free)| JointPath { span, free })
     }
 
     /// Writes every joint's angle \[rad\] and its derivative by `τ` \[rad\].
@@ -63,16 +62,16 @@ impl<'a, T: Scalar> Path<'a, T> {
 impl<T: Scalar> JointPath<'_, T> {
     /// Angle \[rad\] and its derivative by `τ` (eqs. 11 and 12).
     pub fn angle_and_rate(&self, tau: f64) -> (T, T) {
-        let [s, s1] = derivatives(self.phase, tau);
+        let [s, s1] = phase(self.span, self.free, tau);
         let (sin, cos) = s.simd_sin_cos();
         let amplitude = T::of(self.span.amplitude);
-        (amplitude * sin + T::of(self.span.centre), amplitude * cos * s1)
+        (amplitude * sin + T::of(self.span.centre), amplitude * cos * s1 * T::of(2.0))
     }
 
     /// Angle \[rad\] and its first four derivatives by `τ`: eqs. 11–14, eq. 13 with the square it
     /// lacks, and one more.
     pub fn derivatives(&self, tau: f64) -> [T; 5] {
-        let [s, s1, s2, s3, s4] = derivatives(self.phase, tau);
+        let [s, s1, s2, s3, s4] = phase(self.span, self.free, tau);
         let (sin, cos) = s.simd_sin_cos();
         let [three, four, six] = [3.0, 4.0, 6.0].map(T::of);
         let square = s1 * s1;
@@ -84,27 +83,74 @@ impl<T: Scalar> JointPath<'_, T> {
             cos * (s4 - six * square * s2)
                 + sin * (square * square - three * s2 * s2 - four * s1 * s3),
         ];
-        let mut theta = shape.map(|value| value * T::of(self.span.amplitude));
+        // Each derivative by τ is twice that by x.
+        let mut scale = self.span.amplitude;
+        let mut theta = shape.map(|value| {
+            let scaled = value * T::of(scale);
+            scale *= 2.0;
+            scaled
+        });
         theta[0] += T::of(self.span.centre);
         theta
     }
 }
 
-/// A polynomial in `x = 2τ − 1` and its first derivatives by `τ`, by Horner's rule.
-fn derivatives<T: Scalar, const N: usize>(polynomial: &[T], tau: f64) -> [T; N] {
-    let x = T::of(2.0 * tau - 1.0);
+/// Phase and its first derivatives by `x = 2τ − 1`: the step `σ` scaled to the phase's change, and
+/// the window `(1 − x²)³` times the polynomial of the free part.
+///
+/// Written in `u = 1 − x²`, so that what vanishes at both ends vanishes exactly.
+fn phase<T: Scalar, const N: usize>(span: &Span, free: &[T], tau: f64) -> [T; N] {
+    let x = 2.0 * tau - 1.0;
+    let (u, xx) = (1.0 - x * x, x * x);
+    let step = [
+        0.5 + x * (15.0 - xx * (10.0 - 3.0 * xx)) / 16.0,
+        15.0 / 16.0 * u * u,
+        15.0 / 16.0 * (-4.0 * x * u),
+        15.0 / 16.0 * (12.0 * xx - 4.0),
+        15.0 / 16.0 * (24.0 * x),
+    ];
+    let window = [
+        u * u * u,
+        -6.0 * x * u * u,
+        (24.0 * xx - 6.0 * u) * u,
+        (72.0 * u - 48.0 * xx) * x,
+        72.0 * u - 288.0 * xx,
+    ];
+    let free: [T; N] = polynomial(free, T::of(x));
+    let mut phase = [T::zero(); N];
+    for n in 0..N {
+        let start = if n == 0 { span.start_phase } else { 0.0 };
+        phase[n] = T::of(start + span.phase_change * step[n]);
+        // Leibniz's rule.
+        for k in 0..=n {
+            phase[n] += free[k] * T::of(BINOMIAL[n][k] * window[n - k]);
+        }
+    }
+    phase
+}
+
+/// Binomial coefficients.
+const BINOMIAL: [[f64; 5]; 5] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0, 0.0, 0.0],
+    [1.0, 2.0, 1.0, 0.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0, 0.0],
+    [1.0, 4.0, 6.0, 4.0, 1.0],
+];
+
+/// A polynomial, lowest power first, and its first derivatives by Horner's rule.
+fn polynomial<T: Scalar, const N: usize>(coefficients: &[T], x: T) -> [T; N] {
     let mut taylor = [T::zero(); N];
-    for &coefficient in polynomial.iter().rev() {
+    for &coefficient in coefficients.iter().rev() {
         for k in (1..N).rev() {
             taylor[k] = taylor[k] * x + taylor[k - 1];
         }
         taylor[0] = taylor[0] * x + coefficient;
     }
-    // The k-th derivative by τ is k! 2^k times the k-th Taylor coefficient in x.
-    let mut scale = 1.0;
-    for (k, value) in taylor.iter_mut().enumerate().skip(1) {
-        scale *= 2.0 * k as f64;
-        *value *= T::of(scale);
+    let mut factorial = 1.0;
+    for (k, value) in taylor.iter_mut().enumerate().skip(2) {
+        factorial *= k as f64;
+        *value *= T::of(factorial);
     }
     taylor
 }

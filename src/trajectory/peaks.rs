@@ -87,28 +87,39 @@ fn peak(joint: &JointPath<'_, f64>, order: usize, samples: &[Sample], width: f64
     let sampled = sampled.map(|(i, s)| Peak { value: s[order].abs(), tau: i as f64 * width });
     let mut best = sampled.fold(Peak::default(), Peak::or);
     for (i, pair) in samples.windows(2).enumerate() {
-        if tangent_bound(&pair[0], &pair[1], order, width) > best.value {
+        if arch_bound(&pair[0], &pair[1], order, width) > best.value {
             best = best.or(refine(joint, order, i as f64 * width, width, pair));
         }
     }
     best
 }
 
-/// Where the tangents at both ends of an interval meet: an upper bound of a concave arch between
-/// them, or zero where the slope does not turn from up to down (in absolute value).
-fn tangent_bound(left: &Sample, right: &Sample, order: usize, width: f64) -> f64 {
+/// What an arch between two samples can reach at most, or zero where the slope does not turn from up
+/// to down (in absolute value).
+///
+/// The tangents at both ends meet above any concave arch. Over an interval much wider than the
+/// arch's bend it need not be concave, hence twice the tangents' rise.
+fn arch_bound(left: &Sample, right: &Sample, order: usize, width: f64) -> f64 {
     let sign = if left[order] + right[order] < 0.0 { -1.0 } else { 1.0 };
     let (up, down) = (sign * left[order + 1], -sign * right[order + 1]);
     if up <= 0.0 || down <= 0.0 {
         return 0.0;
     }
-    let rise = sign * (right[order] - left[order]);
-    sign * left[order] + up * (rise + down * width) / (up + down)
+    let (start, end) = (sign * left[order], sign * right[order]);
+    let meeting = start + up * (end - start + down * width) / (up + down);
+    let higher = start.max(end);
+    higher + 2.0 * (meeting - higher)
 }
 
 /// The extreme value inside an interval whose slope changes sign: the slope's root by regula falsi
 /// with the Illinois rule. The value's error is quadratic in the root's.
-fn refine(joint: &JointPath<'_, f64>, order: usize, start: f64, width: f64, pair: &[Sample]) -> Peak {
+fn refine(
+    joint: &JointPath<'_, f64>,
+    order: usize,
+    start: f64,
+    width: f64,
+    pair: &[Sample],
+) -> Peak {
     let (mut a, mut b) = (start, start + width);
     let (mut slope_a, mut slope_b) = (pair[0][order + 1], pair[1][order + 1]);
     let mut best = Peak::default();
