@@ -2,6 +2,7 @@
 //! it still knows that place.
 
 use std::fmt::{self, Display};
+use std::num::NonZeroU64;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -172,6 +173,15 @@ pub fn positive<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Er
 pub fn non_negative<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let value = f64::deserialize(deserializer)?;
     check(value, value.is_finite() && value >= 0.0, "a finite number, zero or above")
+}
+
+/// A whole number above zero.
+pub fn count<'de, D: Deserializer<'de>, T: TryFrom<NonZeroU64>>(d: D) -> Result<T, D::Error> {
+    let value = i64::deserialize(d)?;
+    let count = u64::try_from(value).ok().and_then(NonZeroU64::new);
+    count.and_then(|count| T::try_from(count).ok()).ok_or_else(|| {
+        D::Error::custom(format!("found {value}, expected a whole number above zero"))
+    })
 }
 
 /// A number from 0 to 1.

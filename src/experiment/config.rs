@@ -6,7 +6,7 @@ use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use crate::input::{Document, InputError, finite_list, fraction, positive};
+use crate::input::{Document, InputError, count, finite_list, fraction, positive};
 use crate::optimiser::Settings;
 use crate::problem::{DEFAULTS as TASK_DEFAULTS, TrajectoryTable};
 use crate::task::TaskTable;
@@ -15,12 +15,13 @@ const DEFAULTS: &str = include_str!("defaults.toml");
 
 /// An experiment file: every optimiser on every instance of the sweep, for every seed.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct ExperimentFile {
     /// Names the folder of its results.
     #[serde(deserialize_with = "folder_name")]
     pub name: String,
     /// Number of seeds; they are 1, 2, … and the same for every optimiser and instance.
+    #[serde(deserialize_with = "count")]
     pub seeds: NonZeroU64,
     /// What each run may spend.
     pub budget: BudgetTable,
@@ -39,15 +40,16 @@ pub struct ExperimentFile {
 
 /// The `budget` table.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct BudgetTable {
     /// Evaluations a run.
+    #[serde(deserialize_with = "count")]
     pub evaluations: NonZeroU64,
 }
 
 /// The `[sweep]` table: the instances are the cross product of its lists.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct Sweep {
     /// `K_b`.
     #[serde(skip_serializing_if = "Vec::is_empty")]

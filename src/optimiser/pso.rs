@@ -11,17 +11,18 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Optimiser, uniform_point};
-use crate::input::{finite, fraction, non_negative, positive};
+use crate::input::{count, finite, fraction, non_negative, positive};
 use crate::oracle::{Oracle, Rng, Stop};
 use crate::problem::{Evaluation, Formulation, Points};
 
 /// Settings of the particle swarm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct Pso {
     /// variables in which the task is searched
     pub formulation: Formulation,
     /// number of particles, `NP`
+    #[serde(deserialize_with = "count")]
     pub population: NonZeroUsize,
     /// moves of the swarm over which the inertia falls, and after which the swarm rests; without it
     /// as many as the budget allows
@@ -47,7 +48,7 @@ pub struct Pso {
 
 /// Inertia weights of the first and of the last move.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Inertia {
     /// at the first move
     #[serde(deserialize_with = "finite")]

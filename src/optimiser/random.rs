@@ -10,7 +10,7 @@ use crate::problem::{Evaluation, Formulation, Points};
 
 /// Settings of random search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct RandomSearch {
     /// variables in which the task is searched
     pub formulation: Formulation,

@@ -169,9 +169,9 @@ fn draw_legend(
 fn png(tree: &usvg::Tree) -> Result<Vec<u8>, PlotError> {
     let error = |reason: String| PlotError::Convert { format: "PNG", reason };
     let scale = PNG_DPI / SVG_DPI;
-    let size = tree.size().to_int_size().scale_by(scale);
-    let size = size.ok_or_else(|| error("the figure has no size".to_owned()))?;
-    let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height())
+    let pixels = |length: f32| (length * scale).ceil() as u32;
+    let size = tree.size();
+    let mut pixels = tiny_skia::Pixmap::new(pixels(size.width()), pixels(size.height()))
         .ok_or_else(|| error("the figure is too large".to_owned()))?;
     resvg::render(tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
     pixels.encode_png().map_err(|e| error(e.to_string()))

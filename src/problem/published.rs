@@ -43,7 +43,7 @@ impl Reading {
 
 /// A file with one motion to replay.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct ReplayFile {
     task: TaskTable,
     trajectory: TrajectoryTable,
@@ -52,7 +52,7 @@ pub struct ReplayFile {
 
 /// The `[motion]` table: `alpha6` and `alpha7`, or `coefficients`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct MotionTable {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     alpha6: Option<Spanned<Numbers>>,

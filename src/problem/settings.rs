@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::{Accuracy, Reorientation};
-use crate::input::{Document, InputError, positive, positive_interval};
+use crate::input::{Document, InputError, count, positive, positive_interval};
 use crate::task::{Task, TaskTable};
 use crate::trajectory::{Family, Limits, Peaks};
 
@@ -19,7 +19,7 @@ const MOST_TERMS: usize = 16;
 
 /// A file with one task.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct TaskFile {
     /// The task.
     pub task: TaskTable,
@@ -29,13 +29,15 @@ pub struct TaskFile {
 
 /// The `[trajectory]` table.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct TrajectoryTable {
     /// Free coefficients a joint; two are the paper's.
     terms: Spanned<usize>,
     /// Magnus steps along the path during a search.
+    #[serde(deserialize_with = "count")]
     attitude_steps: NonZeroUsize,
     /// Intervals in which peaks are bracketed during a search.
+    #[serde(deserialize_with = "count")]
     peak_intervals: NonZeroUsize,
     /// Where to search.
     #[serde(rename = "box")]
@@ -44,7 +46,7 @@ pub struct TrajectoryTable {
 
 /// The `[trajectory.box]` table.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct BoxTable {
     /// Half-widths for the coefficients of the first, second, … bump; the last serves all further.
     coefficient: Spanned<Vec<Width>>,

@@ -30,7 +30,7 @@ impl Robot {
 
 /// A robot file. Lengths in metres, masses in kilograms, inertias in kg m².
 #[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct RobotFile {
     name: String,
     base: BaseTable,
@@ -38,7 +38,7 @@ pub struct RobotFile {
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct BaseTable {
     #[serde(deserialize_with = "positive")]
     mass: f64,
@@ -50,7 +50,7 @@ struct BaseTable {
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct JointTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
@@ -65,7 +65,7 @@ struct JointTable {
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct DhTable {
     #[serde(default, deserialize_with = "finite")]
     offset_deg: f64,
@@ -95,7 +95,7 @@ impl RobotFile {
 struct Inertia(Matrix3<f64>);
 
 #[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct InertiaTable {
     #[serde(deserialize_with = "finite")]
     xx: f64,

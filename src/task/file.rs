@@ -13,7 +13,7 @@ use crate::trajectory::Limits;
 
 /// The `[task]` table.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct TaskTable {
     robot: Spanned<String>,
     start: PostureTable,
@@ -23,7 +23,7 @@ pub struct TaskTable {
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct PostureTable {
     joints_deg: Spanned<Angles>,
     #[serde(deserialize_with = "finite_array")]
@@ -34,7 +34,7 @@ struct PostureTable {
 struct Angles(#[serde(deserialize_with = "finite_list")] Vec<f64>);
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct LimitsTable {
     rate_deg_s: Spanned<PerJoint>,
     acceleration_deg_s2: Spanned<PerJoint>,
@@ -42,7 +42,7 @@ struct LimitsTable {
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 struct WeightsTable {
     #[serde(deserialize_with = "fraction")]
     base: f64,

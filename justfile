@@ -1,0 +1,27 @@
+# Everyday commands; each is a plain cargo line in CONTRIBUTING.md.
+
+# everything that has to pass before a change lands
+ci:
+    .ci/run
+
+# the tests
+test:
+    cargo test --release
+
+# formatting, lints and documentation, warnings as errors
+lint:
+    cargo fmt --check
+    cargo clippy --release --all-targets -- -D warnings
+    RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps
+
+# the benchmarks
+bench:
+    cargo bench
+
+# the default experiment
+run:
+    cargo run --release -- run
+
+# accept what the snapshot tests now print; look at the difference before committing it
+accept:
+    INSTA_UPDATE=always cargo test --release --test cli

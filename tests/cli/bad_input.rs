@@ -1,0 +1,167 @@
+//! Whatever is wrong with what a user writes: one clear error, exit status 2, no panic. The texts
+//! are in `snapshots/`.
+
+use crate::folder::{Folder, stderr};
+
+/// The paper's robot with one text replaced by another.
+fn robot(from: &str, to: &str) -> String {
+    let text = include_str!("../../src/robot/xiao2023.toml");
+    assert!(text.contains(from), "{from:?} is not in the robot file");
+    text.replacen(from, to, 1)
+}
+
+/// Runs the command on a file and compares what it says.
+fn rejects(name: &str, args: &[&str], file: &str, content: impl AsRef<[u8]>) {
+    let output = Folder::new().with(file, content).run(args);
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{name}: {text}");
+    assert!(!text.contains("panicked"), "{name}: {text}");
+    assert!(output.stdout.is_empty(), "{name} printed a result");
+    insta::assert_snapshot!(name, text);
+}
+
+#[test]
+fn tasks() {
+    for (name, text) in [
+        ("unknown_key", "[task]\nrobto = 'xiao2023'\n"),
+        ("wrong_type", "[task.weights]\nbase = 'heavy'\n"),
+        ("syntax", "[task\n"),
+        ("too_few_joints", "[task.start]\njoints_deg = [10, 30, 45, -20, -25]\n"),
+        ("joint_out_of_range", "[task.goal]\njoints_deg = [40, 60, 90, -10, -30, 160]\n"),
+        ("angle_not_a_number", "[task.start]\nbase_zyx_deg = [6, nan, 7]\n"),
+        ("two_euler_angles", "[task.start]\nbase_zyx_deg = [6, 15]\n"),
+        ("limit_not_positive", "[task.limits]\njerk_deg_s3 = -80\n"),
+        ("limit_in_list_not_positive", "[task.limits]\nrate_deg_s = [60, 60, 0, 60, 60, 60]\n"),
+        ("limits_too_few", "[task.limits]\nrate_deg_s = [60, 60]\n"),
+        ("limit_infinite", "[task.limits]\nacceleration_deg_s2 = inf\n"),
+        ("limit_of_wrong_type", "[task.limits]\nacceleration_deg_s2 = 'high'\n"),
+        ("weight_out_of_range", "[task.weights]\nbase = 1.5\n"),
+        ("unknown_robot", "[task]\nrobot = 'xiao2032'\n"),
+        ("no_terms", "[trajectory]\nterms = 0\n"),
+        ("too_many_terms", "[trajectory]\nterms = 17\n"),
+        ("no_steps", "[trajectory]\nattitude_steps = 0\n"),
+        ("box_reversed", "[trajectory.box]\nduration = [9, 3]\n"),
+        ("box_from_zero", "[trajectory.box]\nduration = [0, 3]\n"),
+        ("box_without_widths", "[trajectory.box]\ncoefficient = []\n"),
+        ("box_alpha_too_few", "[trajectory.box]\nalpha = [1e-4]\n"),
+        ("task_is_no_table", "task = 3\n"),
+    ] {
+        rejects(&format!("task_{name}"), &["plan", "task.toml"], "task.toml", text);
+    }
+}
+
+#[test]
+fn robots() {
+    for (name, text) in [
+        ("missing_mass", robot("mass = 6.3\n", "")),
+        ("missing_joints", "name = 'x'\n[base]\nmass = 1\nmount = [0, 0, 0]\ninertia = { xx = 1, yy = 1, zz = 1 }\n".to_owned()),
+        ("no_joints", "joint = []\nname = 'x'\n[base]\nmass = 1\nmount = [0, 0, 0]\ninertia = { xx = 1, yy = 1, zz = 1 }\n".to_owned()),
+        ("unknown_key", robot("mass = 6.3", "mas = 6.3")),
+        ("mass_negative", robot("mass = 6.9", "mass = -6.9")),
+        ("mass_zero", robot("mass = 600", "mass = 0")),
+        ("mass_infinite", robot("mass = 11", "mass = inf")),
+        ("inertia_indefinite", robot("zz = 0.01, yz", "zz = -0.01, yz")),
+        ("inertia_incomplete", robot("zz = 0.015", "xz = 0")),
+        ("range_reversed", robot("[-165, 165]", "[165, -165]")),
+        ("range_empty", robot("[-165, 165]", "[10, 10]")),
+        ("range_of_one", robot("[-165, 165]", "[165]")),
+        ("centre_of_mass_short", robot("[0, 0, 0.065]", "[0, 0.065]")),
+        ("centre_of_mass_not_a_number", robot("[0, 0, 0.065]", "[0, nan, 0.065]")),
+        ("dh_incomplete", robot("d = 0.115, ", "")),
+    ] {
+        rejects(&format!("robot_{name}"), &["check", "robot.toml"], "robot.toml", text);
+    }
+}
+
+/// A robot's mistake is shown in the robot's file, also when a task names it.
+#[test]
+fn robot_named_by_a_task() {
+    let folder = Folder::new()
+        .with("arm.toml", robot("mass = 6.3", "mass = -6.3"))
+        .with("task.toml", "[task]\nrobot = 'arm.toml'\n");
+    let output = folder.run(&["plan", "task.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    insta::assert_snapshot!("robot_named_by_a_task", stderr(&output));
+}
+
+#[cfg(feature = "harness")]
+#[test]
+fn experiments() {
+    const FIELD: &str = "\n[[optimiser]]\nrandom = {}\n";
+    for (name, text) in [
+        ("without_name", FIELD.to_owned()),
+        ("name_is_a_path", format!("name = '../x'{FIELD}")),
+        ("no_field", "name = 'x'\noptimiser = []\n".to_owned()),
+        ("without_field", "name = 'x'\n".to_owned()),
+        ("unknown_optimiser", "name = 'x'\n[[optimiser]]\npos = {}\n".to_owned()),
+        ("unknown_setting", "name = 'x'\n[[optimiser]]\npso = { poplation = 20 }\n".to_owned()),
+        ("no_particles", "name = 'x'\n[[optimiser]]\npso = { population = 0 }\n".to_owned()),
+        (
+            "unknown_formulation",
+            "name = 'x'\n[[optimiser]]\npso = { formulation = 'row' }\n".to_owned(),
+        ),
+        ("velocity_limit", "name = 'x'\n[[optimiser]]\npso = { velocity_limit = 2 }\n".to_owned()),
+        ("no_seeds", format!("name = 'x'\nseeds = 0{FIELD}")),
+        ("no_budget", format!("name = 'x'\nbudget = {{ evaluations = 0 }}{FIELD}")),
+        ("budget_in_seconds", format!("name = 'x'\nbudget = {{ seconds = 3 }}{FIELD}")),
+        ("sweep_unknown", format!("name = 'x'\n[sweep]\njerk = [20]{FIELD}")),
+        ("sweep_weight", format!("name = 'x'\n[sweep]\nweight_base = [0.1, 1.1]{FIELD}")),
+        ("sweep_terms", format!("name = 'x'\n[sweep]\nterms = [2, 99]{FIELD}")),
+        ("target_not_a_number", format!("name = 'x'\ntargets = [nan]{FIELD}")),
+    ] {
+        rejects(
+            &format!("experiment_{name}"),
+            &["run", "experiment.toml"],
+            "experiment.toml",
+            text,
+        );
+    }
+}
+
+#[test]
+fn motions() {
+    let six = "[0, 0, 0, 0, 0, 0]";
+    for (name, text) in [
+        ("too_few", format!("[motion]\nt_f = 6\nalpha6 = [0, 0]\nalpha7 = {six}\n")),
+        ("half", format!("[motion]\nt_f = 6\nalpha6 = {six}\n")),
+        (
+            "both",
+            format!("[motion]\nt_f = 6\nalpha6 = {six}\nalpha7 = {six}\ncoefficients = [[1]]\n"),
+        ),
+        (
+            "ragged",
+            "[motion]\nt_f = 6\ncoefficients = [[1], [1], [1, 2], [1], [1], [1]]\n".to_owned(),
+        ),
+        ("no_time", format!("[motion]\nt_f = 0\nalpha6 = {six}\nalpha7 = {six}\n")),
+        ("too_long", format!("[motion]\nt_f = 1e9\nalpha6 = {six}\nalpha7 = {six}\n")),
+        ("missing", "[task.weights]\nbase = 0.5\n".to_owned()),
+    ] {
+        rejects(&format!("motion_{name}"), &["replay", "motion.toml"], "motion.toml", text);
+    }
+}
+
+#[test]
+fn arguments() {
+    for (name, args) in [
+        ("no_such_file", &["plan", "nowhere.toml"][..]),
+        ("no_verb", &[]),
+        ("unknown_verb", &["pln"]),
+        ("unknown_optimiser", &["plan", "--optimiser", "psoo"]),
+        ("seed_not_a_number", &["plan", "--seed", "first"]),
+        ("motion_format", &["plan", "--motion", "motion.xlsx"]),
+        ("no_budget", &["plan", "--budget", "0"]),
+        ("check_without_file", &["check"]),
+    ] {
+        rejects(&format!("argument_{name}"), args, "unused", "");
+    }
+    #[cfg(feature = "harness")]
+    for (name, args) in [
+        ("shard_too_large", &["run", "--shard", "4/4"][..]),
+        ("shard_not_a_fraction", &["run", "--shard", "half"]),
+        ("no_seeds", &["run", "--seeds", "0"]),
+        ("no_jobs", &["run", "--jobs", "0"]),
+    ] {
+        rejects(&format!("argument_{name}"), args, "unused", "");
+    }
+    rejects("argument_not_text", &["check", "file.toml"], "file.toml", [0xff, 0xfe, 0x00]);
+}

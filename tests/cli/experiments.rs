@@ -1,0 +1,112 @@
+//! What `run` promises: the same results whatever the number of jobs, nothing done twice, nothing
+//! half-written, figures in three formats.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use crate::folder::{Folder, stderr, stdout};
+use polars::prelude::*;
+
+const SMALL: &str = "name = 'small'\nseeds = 3\nbudget = { evaluations = 700 }\ntargets = [1000, 0.1]\n\
+    [sweep]\njerk_limit_deg_s3 = [40, 80]\n[[optimiser]]\npso = { population = 20 }\n\
+    [[optimiser]]\nrandom = { formulation = 'scaled' }\n";
+
+fn run(folder: &Folder, args: &[&str]) -> String {
+    let output = folder.run(&[&["run"], args].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    stdout(&output)
+}
+
+/// Every file of a folder with its bytes.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+    entries.map(|e| (e.file_name().into_string().unwrap(), fs::read(e.path()).unwrap())).collect()
+}
+
+fn table(folder: &Path) -> Vec<DataFrame> {
+    let read = |bytes: Vec<u8>| ParquetReader::new(std::io::Cursor::new(bytes)).finish().unwrap();
+    files(folder).into_values().map(read).collect()
+}
+
+#[test]
+fn traces_are_the_same_bytes_whatever_the_jobs() {
+    let folder = Folder::new().with("small.toml", SMALL);
+    for (out, jobs) in [("one", "1"), ("two", "2"), ("again", "2")] {
+        run(&folder, &["small.toml", "--out", out, "--jobs", jobs]);
+    }
+    let traces = |out: &str| files(&folder.path().join(out).join("traces"));
+    let one = traces("one");
+    assert_eq!(one.len(), 12);
+    assert_eq!(one, traces("two"));
+    assert_eq!(one, traces("again"));
+}
+
+#[test]
+fn budgets_are_spent_to_the_last_evaluation_and_not_overshot() {
+    let folder = Folder::new().with("small.toml", SMALL);
+    run(&folder, &["small.toml", "--out", "out"]);
+    for runs in table(&folder.path().join("out/runs")) {
+        assert_eq!(runs.column("evaluations").unwrap().u64().unwrap().get(0), Some(700));
+    }
+    for trace in table(&folder.path().join("out/traces")) {
+        let column = trace.column("evaluation").unwrap().u64().unwrap().clone();
+        let evaluations: Vec<u64> = column.into_no_null_iter().collect();
+        assert_eq!((evaluations[0], evaluations[evaluations.len() - 1]), (1, 700));
+        assert!(evaluations.is_sorted_by(|a, b| a < b));
+        let column = trace.column("j").unwrap().f64().unwrap().clone();
+        let costs: Vec<f64> = column.into_no_null_iter().collect();
+        assert!(costs.is_sorted_by(|a, b| a >= b));
+    }
+}
+
+#[test]
+fn stored_runs_are_not_done_again() {
+    let folder = Folder::new().with("small.toml", SMALL);
+    run(&folder, &["small.toml", "--out", "out", "--shard", "0/2"]);
+    let first = files(&folder.path().join("out/runs"));
+    assert_eq!(first.len(), 6);
+    run(&folder, &["small.toml", "--out", "out", "--shard", "1/2"]);
+    let summary = run(&folder, &["small.toml", "--out", "out"]);
+    let all = files(&folder.path().join("out/runs"));
+    assert_eq!(all.len(), 12);
+    // Runs carry their date: the same bytes mean that nothing was done twice.
+    assert!(first.iter().all(|(name, bytes)| all[name] == *bytes));
+    assert!(summary.contains("J ≤ 1000") && summary.contains("3/3") && summary.contains("0/3"));
+    run(&folder, &["small.toml", "--out", "out", "--fresh"]);
+    let fresh = files(&folder.path().join("out/runs"));
+    assert!(first.iter().all(|(name, bytes)| fresh[name] != *bytes));
+}
+
+#[test]
+fn figures_come_in_three_formats_with_text_that_is_there() {
+    let folder = Folder::new().with("small.toml", SMALL);
+    run(&folder, &["small.toml", "--out", "out"]);
+    let figures = files(&folder.path().join("out/figures"));
+    for name in ["joint-angles", "joint-derivatives", "base-attitude", "convergence"] {
+        let svg = String::from_utf8(figures[&format!("{name}.svg")].clone()).unwrap();
+        assert!(svg.contains("<path") && !svg.contains("<text"), "{name}: text is no outline");
+        let png = &figures[&format!("{name}.png")];
+        assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+        let width = u32::from_be_bytes(png[16..20].try_into().unwrap());
+        assert_eq!(width, 1040, "88 mm at 300 dots an inch");
+        assert_eq!(&figures[&format!("{name}.pdf")][..5], b"%PDF-");
+    }
+}
+
+#[test]
+fn shipped_experiments_are_valid() {
+    for (name, bytes) in files(Path::new("experiments")) {
+        let output = Folder::new().with(&name, bytes).run(&["check", &name]);
+        assert!(output.status.success(), "{name}: {}", stderr(&output));
+    }
+}
+
+/// A folder that cannot be written to is named, with exit status 1.
+#[test]
+fn unwritable_results_fail() {
+    let folder = Folder::new().with("small.toml", SMALL).with("file", "");
+    let output = folder.run(&["run", "small.toml", "--out", "file/out"]);
+    assert_eq!(output.status.code(), Some(1));
+    insta::assert_snapshot!("unwritable_results", stderr(&output));
+}

@@ -1,0 +1,7 @@
+//! The command as its users meet it.
+
+mod bad_input;
+#[cfg(feature = "harness")]
+mod experiments;
+mod folder;
+mod verbs;

@@ -1,0 +1,149 @@
+//! What the verbs promise.
+
+use crate::folder::{Folder, stderr, stdout};
+use serde_json::Value;
+
+fn json(folder: &Folder, args: &[&str]) -> Value {
+    let output = folder.run(args);
+    assert!(output.status.success(), "{}", stderr(&output));
+    serde_json::from_str(&stdout(&output)).unwrap()
+}
+
+fn near(value: &Value, expected: f64, tolerance: f64) {
+    let value = value.as_f64().unwrap();
+    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
+}
+
+/// The paper's claim: J* = 3.223. What the motion gives as physics: Pinocchio, in
+/// `reference/xiao2023.json`; as published: an independent computation in Python.
+#[test]
+fn replay_gives_both_readings() {
+    let replay = json(&Folder::new(), &["replay", "--json"]);
+    near(&replay["published"]["t_f"], 6.3304, 0.0);
+    near(&replay["published"]["j"], 3.223, 0.0);
+    near(&replay["published"]["alpha6"][5], 9.9397e-5, 1e-17);
+    near(&replay["published"]["alpha7"][0], -1.1520e-5, 1e-17);
+    let [physics, published] = &replay["readings"].as_array().unwrap()[..] else {
+        panic!("expected two readings")
+    };
+    assert_eq!(physics["reading"], "physics");
+    near(&physics["residual_deg"], 13.2907, 0.001);
+    near(&physics["peaks"]["jerk_deg_s3"][3], 80.6665, 0.0005);
+    assert_eq!(published["reading"], "as-published");
+    near(&published["residual_deg"], 2.049, 0.003);
+    near(&published["penalty"], 0.752, 0.001);
+    near(&published["j"], 3.230, 0.004);
+}
+
+#[test]
+fn replay_reads_what_plan_found() {
+    let folder = Folder::new();
+    let plan = json(&folder, &["plan", "--json", "--budget", "3000", "--seed", "4"]);
+    let text =
+        format!("[motion]\nt_f = {}\ncoefficients = {}\n", plan["t_f"], plan["coefficients"]);
+    let replay = json(&folder.with("motion.toml", text), &["replay", "motion.toml", "--json"]);
+    near(&replay["readings"][0]["j"], plan["j"].as_f64().unwrap(), 1e-9);
+    near(&replay["readings"][0]["residual_deg"], plan["residual_deg"].as_f64().unwrap(), 1e-9);
+}
+
+#[test]
+fn plan_promises_its_fields() {
+    let folder = Folder::new();
+    let plan = json(
+        &folder,
+        &["plan", "--optimiser", "random", "--seed", "7", "--budget", "500", "--json"],
+    );
+    let keys: Vec<&str> = plan.as_object().unwrap().keys().map(String::as_str).collect();
+    insta::assert_snapshot!("plan_fields", keys.join("\n"));
+    assert_eq!(plan["evaluations"], 500);
+    assert_eq!(plan["coefficients"].as_array().unwrap().len(), 6);
+    let again = json(
+        &folder,
+        &["plan", "--optimiser", "random", "--seed", "7", "--budget", "500", "--json"],
+    );
+    assert_eq!(plan["coefficients"], again["coefficients"]);
+}
+
+/// Any arm: three joints, another mount, limits of their own, four terms.
+#[test]
+fn plan_takes_another_robot() {
+    let link =
+        "mass = 4\ncentre_of_mass = [0, 0, 0.2]\ninertia = { xx = 0.1, yy = 0.1, zz = 0.02 }\n";
+    let joint = |alpha: i32| {
+        format!(
+            "[[joint]]\ndh = {{ d = 0.4, a = 0.1, alpha_deg = {alpha} }}\nrange_deg = [-170, 170]\n{link}"
+        )
+    };
+    let arm = format!(
+        "name = 'small'\n[base]\nmass = 50\nmount = [0, 0, 0.5]\nmount_zyx_deg = [0, 90, 0]\n\
+         inertia = {{ xx = 5, yy = 5, zz = 5 }}\n{}{}{}",
+        joint(90),
+        joint(-90),
+        joint(0)
+    );
+    let task = "[task]\nrobot = 'arm.toml'\n[task.start]\njoints_deg = [0, 0, 0]\nbase_zyx_deg = [3, 0, -4]\n\
+                [task.goal]\njoints_deg = [0, 0, 0]\n[task.limits]\nrate_deg_s = [30, 20, 40]\n\
+                [trajectory]\nterms = 4\n";
+    let folder = Folder::new().with("arm.toml", arm).with("task.toml", task);
+    let plan = json(&folder, &["plan", "task.toml", "--json", "--budget", "6000"]);
+    assert_eq!(plan["peaks"]["rate_deg_s"].as_array().unwrap().len(), 3);
+    assert_eq!(plan["coefficients"][0].as_array().unwrap().len(), 4);
+    assert!(plan.get("alpha6").is_none());
+    assert!(plan["residual_deg"].as_f64().unwrap() < 5.0, "no better than doing nothing");
+    for (rate, limit) in
+        plan["peaks"]["rate_deg_s"].as_array().unwrap().iter().zip([30.0, 20.0, 40.0])
+    {
+        assert!(rate.as_f64().unwrap() <= limit * (1.0 + 1e-6));
+    }
+}
+
+#[test]
+fn motions_are_written() {
+    let folder = Folder::new();
+    for file in ["motion.csv", "motion.yaml"] {
+        assert!(folder.run(&["replay", "--motion", file]).status.success());
+    }
+    let csv = std::fs::read_to_string(folder.path().join("motion.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + 501 * 6);
+    assert!(csv.starts_with(
+        "time,joint,angle,rate,acceleration,jerk,base_w,base_x,base_y,base_z\n0.0,joint1,"
+    ));
+    let yaml = std::fs::read_to_string(folder.path().join("motion.yaml")).unwrap();
+    let message: serde_yaml_ng::Value = serde_yaml_ng::from_str(&yaml).unwrap();
+    assert_eq!(message["joint_names"][5], "joint6");
+    let last = &message["points"][500];
+    assert_eq!(last["time_from_start"]["sec"], 6);
+    assert_eq!(last["time_from_start"]["nanosec"], 330_400_000);
+    assert!((last["positions"][0].as_f64().unwrap().to_degrees() - 40.0).abs() < 1e-9);
+}
+
+/// A motion that cannot be written is an error, not a loss: exit status 1.
+#[test]
+fn unwritable_motion_fails() {
+    let output = Folder::new().run(&["replay", "--motion", "no/such/folder/motion.csv"]);
+    assert_eq!(output.status.code(), Some(1));
+    insta::assert_snapshot!("unwritable_motion", stderr(&output));
+}
+
+#[test]
+fn list_shows_everything_with_its_settings() {
+    let output = Folder::new().run(&["list"]);
+    assert!(output.status.success());
+    insta::assert_snapshot!("list", stdout(&output));
+}
+
+#[test]
+fn check_prints_what_is_resolved() {
+    let folder = Folder::new()
+        .with("task.toml", "[task.limits]\njerk_deg_s3 = 40\n")
+        .with("robot.toml", include_str!("../../src/robot/xiao2023.toml"));
+    for name in ["task", "robot"] {
+        let output = folder.run(&["check", &format!("{name}.toml")]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        insta::assert_snapshot!(format!("check_{name}"), stdout(&output));
+        assert_eq!(stderr(&output).matches("breaks the triangle inequality").count(), 1);
+        // What is printed is itself a file that says the same.
+        let again = Folder::new().with("again.toml", stdout(&output)).run(&["check", "again.toml"]);
+        assert_eq!(stdout(&again), stdout(&output));
+    }
+}
