@@ -12,7 +12,7 @@ use resvg::{tiny_skia, usvg};
 use svg2pdf::{ConversionOptions, PageOptions};
 
 use super::panel::{Line, Panel};
-use super::style::{COLUMN_MM, FONT, INK, text_size, units};
+use super::style::{COLUMN_MM, FONT, INK, text_size, text_width, units};
 use crate::output::{FileError, create_folder, write_file};
 
 /// Panels one below the other, under one legend; they share the horizontal axis.
@@ -127,9 +127,7 @@ impl Figure {
         let mut x = i32::MAX;
         for line in self.panels.iter().take(1).flat_map(|p| &p.lines).filter(|l| !l.name.is_empty())
         {
-            let font = (FONT, text_size()).into_font();
-            let text = font.box_size(&line.name).map_or(0, |(width, _)| width.cast_signed());
-            let width = units(5.2) + text;
+            let width = units(4.6) + text_width(&line.name);
             if x.saturating_add(width) > units(COLUMN_MM) {
                 rows.push(Vec::new());
                 x = units(1.5);
@@ -137,7 +135,7 @@ impl Figure {
             if let Some(row) = rows.last_mut() {
                 row.push((x, line));
             }
-            x += width + units(1.4);
+            x += width + units(1.6);
         }
         rows
     }
@@ -152,7 +150,7 @@ fn draw_legend(
     for (i, row) in rows.iter().enumerate() {
         let y = units(LEGEND_LINE * (i as f64 + 0.6));
         for (x, line) in row {
-            let sample = [(*x, y), (x + units(4.4), y)];
+            let sample = [(*x, y), (x + units(4.0), y)];
             match line.stroke.dash {
                 None => area.draw(&PathElement::new(sample, line.stroke.shape()))?,
                 Some((dash, gap)) => {
@@ -160,7 +158,7 @@ fn draw_legend(
                     area.draw(&DashedPathElement::new(sample, units(dash), units(gap), style))?;
                 }
             }
-            area.draw_text(&line.name, &text, (x + units(5.2), y))?;
+            area.draw_text(&line.name, &text, (x + units(4.6), y))?;
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! How charts look in print: one journal column wide, 8-point text, colours that a colour-blind
 //! reader can tell apart, dashes that a grey copy keeps apart.
 
-use plotters::style::{Color as _, RGBColor, ShapeStyle};
+use plotters::style::{Color as _, IntoFont as _, RGBColor, ShapeStyle};
 
 /// Drawing units a millimetre. Plotters draws on whole units; this many make curves smooth.
 pub(super) const UNITS_PER_MM: f64 = 40.0;
@@ -46,6 +46,14 @@ pub(super) fn units(mm: f64) -> i32 {
 /// Text height in plotters' measure, which is 1.24 times the font size.
 pub(super) fn text_size() -> f64 {
     TEXT_PT * MM_PER_PT * UNITS_PER_MM * 1.24
+}
+
+/// Width of a text as drawn. Plotters measures at a font size that makes ascent and descent together
+/// as high as its text size, 1.362 em for this font; it draws at the size divided by 1.24.
+pub(super) fn text_width(text: &str) -> i32 {
+    let font = (FONT, text_size()).into_font();
+    let measured = font.box_size(text).map_or(0.0, |(width, _)| f64::from(width));
+    (measured * 1.362 / 1.24).round() as i32
 }
 
 /// How one line is drawn.
