@@ -96,7 +96,8 @@ impl Document {
         help: Option<String>,
     ) -> InputError {
         // A long table is pointed at by its first line only.
-        let first_line = self.text[span.clone()].lines().next().map_or(0, str::len);
+        let marked = self.text.get(span.clone()).unwrap_or_default();
+        let first_line = marked.lines().next().map_or(0, str::len);
         let name = self.path.display().to_string();
         InputError::Content {
             message: message.to_string(),
@@ -121,23 +122,31 @@ impl Document {
 /// text, hence the empty spans.
 fn fill<'a>(table: &mut DeTable<'a>, default: DeTable<'a>) {
     for (key, value) in default {
-        let value = value.into_inner();
         match (table.get_mut(key.get_ref().as_ref()).map(Spanned::get_mut), value) {
-            (Some(DeValue::Table(inner)), DeValue::Table(default)) => fill(inner, default),
-            (Some(_), _) => {}
-            (None, DeValue::Table(default)) => {
-                let mut inner = DeTable::new();
-                fill(&mut inner, default);
-                table.insert(unplaced(key.into_inner()), unplaced(DeValue::Table(inner)));
+            (Some(DeValue::Table(inner)), value) => {
+                if let DeValue::Table(default) = value.into_inner() {
+                    fill(inner, default);
+                }
             }
+            (Some(_), _) => {}
             (None, value) => {
-                table.insert(unplaced(key.into_inner()), unplaced(value));
+                table.insert(Spanned::new(0..0, key.into_inner()), unplaced(value));
             }
         }
     }
 }
 
-fn unplaced<T>(value: T) -> Spanned<T> {
+/// The same value with empty spans, at any depth.
+fn unplaced(value: Spanned<DeValue<'_>>) -> Spanned<DeValue<'_>> {
+    let value = match value.into_inner() {
+        DeValue::Array(elements) => DeValue::Array(elements.into_iter().map(unplaced).collect()),
+        DeValue::Table(default) => {
+            let mut table = DeTable::new();
+            fill(&mut table, default);
+            DeValue::Table(table)
+        }
+        other => other,
+    };
     Spanned::new(0..0, value)
 }
 
@@ -175,12 +184,16 @@ pub fn non_negative<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D
     check(value, value.is_finite() && value >= 0.0, "a finite number, zero or above")
 }
 
-/// A whole number above zero.
-pub fn count<'de, D: Deserializer<'de>, T: TryFrom<NonZeroU64>>(d: D) -> Result<T, D::Error> {
-    let value = i64::deserialize(d)?;
-    let count = u64::try_from(value).ok().and_then(NonZeroU64::new);
+/// A whole number from 1 to `MOST`.
+pub fn count<'de, const MOST: u64, D, T>(deserializer: D) -> Result<T, D::Error>
+where
+    D: Deserializer<'de>,
+    T: TryFrom<NonZeroU64>,
+{
+    let value = i64::deserialize(deserializer)?;
+    let count = u64::try_from(value).ok().filter(|&n| n <= MOST).and_then(NonZeroU64::new);
     count.and_then(|count| T::try_from(count).ok()).ok_or_else(|| {
-        D::Error::custom(format!("found {value}, expected a whole number above zero"))
+        D::Error::custom(format!("found {value}, expected a whole number from 1 to {MOST}"))
     })
 }
 
@@ -188,11 +201,6 @@ pub fn count<'de, D: Deserializer<'de>, T: TryFrom<NonZeroU64>>(d: D) -> Result<
 pub fn fraction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let value = f64::deserialize(deserializer)?;
     check(value, (0.0..=1.0).contains(&value), "a number from 0 to 1")
-}
-
-/// A list of finite numbers.
-pub fn finite_list<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
-    Ok(Vec::<Finite>::deserialize(deserializer)?.into_iter().map(|f| f.0).collect())
 }
 
 /// A fixed number of finite numbers.
@@ -205,12 +213,16 @@ where
 }
 
 /// A finite number, checked where it stands in a list.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Finite(#[serde(deserialize_with = "finite")] pub f64);
 
-/// A positive number, checked where it stands in a list.
-#[derive(Debug, Clone, Copy, Deserialize)]
-struct Positive(#[serde(deserialize_with = "positive")] f64);
+/// A finite number above zero, checked where it stands in a list.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Positive(#[serde(deserialize_with = "positive")] pub f64);
+
+/// A number from 0 to 1, checked where it stands in a list.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Fraction(#[serde(deserialize_with = "fraction")] pub f64);
 
 /// One positive number for all joints, or one each.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -39,7 +39,12 @@ pub struct Outward<'a, T> {
 
 impl<'a, T: Scalar> Outward<'a, T> {
     /// Starts at the arm's mount; `angles` \[rad\], one a joint.
+    ///
+    /// # Panics
+    ///
+    /// Panics when there are more or fewer angles than joints.
     pub fn new(robot: &'a Robot, angles: &'a [T]) -> Self {
+        assert_eq!(angles.len(), robot.joint_count(), "one angle a joint");
         let frame = Pose {
             position: robot.mount.map(T::of),
             rotation: robot.mount_rotation.matrix().map(T::of),

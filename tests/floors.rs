@@ -31,6 +31,7 @@ fn uses(text: &str) -> Vec<String> {
     text.split("crate::")
         .skip(1)
         .flat_map(|rest| match rest.strip_prefix('{') {
+            // What stands deeper in a list of imports belongs to a module named before it.
             Some(list) => {
                 list.split('}').next().unwrap().split(',').map(|s| word(s.trim())).collect()
             }

@@ -4,8 +4,9 @@ use std::collections::HashMap;
 
 use polars::prelude::*;
 
-use super::runs::{Run, groups, runs};
+use super::runs::{Run, groups};
 use super::summary::quantile;
+use crate::experiment::Plan;
 
 /// Quartiles of the best cost so far over the seeds of one optimiser.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,14 +24,13 @@ pub struct Curve {
 /// Points of a curve, spaced evenly on a logarithmic axis.
 const POINTS: usize = 200;
 
-/// The convergence of every optimiser on every instance.
+/// The convergence of every optimiser on every instance, as the searches evaluated their costs.
 ///
 /// A curve holds where every run of the group still counts: up to the smallest budget among them. A
 /// run that ended early keeps the best it had.
-pub fn convergence(runs_table: &DataFrame, traces: &DataFrame) -> PolarsResult<Vec<Curve>> {
+pub fn convergence(plan: &Plan, runs: &[Run], traces: &DataFrame) -> PolarsResult<Vec<Curve>> {
     let steps = steps(traces)?;
-    let runs = runs(runs_table)?;
-    Ok(groups(&runs).iter().map(|group| curve(group, &steps)).collect())
+    Ok(groups(runs).iter().map(|group| curve(plan, group, &steps)).collect())
 }
 
 /// The rows of a run's trace: evaluation and best cost.
@@ -53,7 +53,7 @@ fn steps(traces: &DataFrame) -> PolarsResult<HashMap<String, Trace>> {
     Ok(steps)
 }
 
-fn curve(group: &[&Run], steps: &HashMap<String, Trace>) -> Curve {
+fn curve(plan: &Plan, group: &[&Run], steps: &HashMap<String, Trace>) -> Curve {
     let budget = group.iter().map(|run| run.budget).min().unwrap_or(1);
     let traces = group.iter().map(|run| steps.get(&run.key).map_or(&[][..], Vec::as_slice));
     let traces: Vec<_> = traces.collect();
@@ -67,8 +67,8 @@ fn curve(group: &[&Run], steps: &HashMap<String, Trace>) -> Curve {
         [0.25, 0.5, 0.75].map(|q| quantile(&costs, q))
     });
     Curve {
-        optimiser: group[0].optimiser.clone(),
-        instance: group[0].instance.clone(),
+        optimiser: plan.optimisers[group[0].optimiser].label.clone(),
+        instance: plan.instances[group[0].instance].label.clone(),
         quartiles: quartiles.collect(),
         evaluations,
     }

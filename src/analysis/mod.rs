@@ -6,6 +6,6 @@ mod summary;
 mod table;
 
 pub use convergence::{Curve, convergence};
-pub use runs::{BestRun, Run, best_run, runs};
+pub use runs::{Run, best_run, runs};
 pub use summary::summary;
 pub use table::render;

@@ -1,24 +1,26 @@
 //! Rows of the `runs` table.
 
+use std::collections::HashMap;
+
 use polars::prelude::*;
 
-/// What the summary needs of one run.
+use crate::experiment::{Plan, RunSpec};
+
+/// A stored run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// Key.
     pub key: String,
-    /// Label of the optimiser.
-    pub optimiser: String,
-    /// Label of the instance.
-    pub instance: String,
+    /// Index of the optimiser in the plan.
+    pub optimiser: usize,
+    /// Index of the instance in the plan.
+    pub instance: usize,
     /// Seed.
     pub seed: u64,
     /// Evaluations the run was allowed.
     pub budget: u64,
-    /// Best cost found by the search; infinite where it found none.
+    /// Best cost, certified; infinite for a run that failed.
     pub cost: f64,
-    /// Best cost, certified.
-    pub certified_cost: f64,
     /// Error of the base \[°\].
     pub residual_deg: f64,
     /// Duration \[s\].
@@ -27,74 +29,53 @@ pub struct Run {
     pub evaluations: u64,
     /// Wall time \[s\].
     pub seconds: f64,
-    /// How it ended.
-    pub status: String,
-}
-
-/// The best motion of a set of runs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BestRun {
-    /// Label of the optimiser.
-    pub optimiser: String,
-    /// Label of the instance.
-    pub instance: String,
-    /// Seed.
-    pub seed: u64,
-    /// Cost, certified.
-    pub certified_cost: f64,
-    /// Duration \[s\].
-    pub duration: f64,
-    /// Bump coefficients, joint by joint.
+    /// Bump coefficients of the best motion, joint by joint.
     pub coefficients: Vec<f64>,
 }
 
-/// The rows of a `runs` table.
-pub fn runs(frame: &DataFrame) -> PolarsResult<Vec<Run>> {
+/// The rows of a `runs` table, labelled as the plan labels them: an edited experiment may call a
+/// stored run by another name. Runs that are not in the plan are left out.
+pub fn runs(plan: &Plan, frame: &DataFrame) -> PolarsResult<Vec<Run>> {
     if frame.height() == 0 {
         return Ok(Vec::new());
     }
+    let planned: HashMap<&str, &RunSpec> =
+        plan.runs.iter().map(|run| (run.key.as_str(), run)).collect();
     let text = |name: &str| frame.column(name)?.str();
     let real = |name: &str| frame.column(name)?.f64();
     let whole = |name: &str| frame.column(name)?.u64();
-    let (key, optimiser, instance) = (text("key")?, text("optimiser")?, text("instance")?);
-    let (status, seed, budget) = (text("status")?, whole("seed")?, whole("budget")?);
-    let (evaluations, cost, certified) = (whole("evaluations")?, real("j")?, real("certified_j")?);
+    let (key, status) = (text("key")?, text("status")?);
+    let (evaluations, cost) = (whole("evaluations")?, real("certified_j")?);
     let (residual, duration, seconds) = (real("residual_deg")?, real("t_f")?, real("seconds")?);
-    let string = |column: &StringChunked, i| column.get(i).unwrap_or_default().to_owned();
-    let row = |i: usize| Run {
-        key: string(key, i),
-        optimiser: string(optimiser, i),
-        instance: string(instance, i),
-        seed: seed.get(i).unwrap_or_default(),
-        budget: budget.get(i).unwrap_or_default(),
-        cost: cost.get(i).unwrap_or(f64::INFINITY),
-        certified_cost: certified.get(i).unwrap_or(f64::INFINITY),
-        residual_deg: residual.get(i).unwrap_or(f64::NAN),
-        duration: duration.get(i).unwrap_or(f64::NAN),
-        evaluations: evaluations.get(i).unwrap_or_default(),
-        seconds: seconds.get(i).unwrap_or(f64::NAN),
-        status: string(status, i),
+    let coefficients = frame.column("coefficients")?.list()?;
+    let row = |i: usize| -> PolarsResult<Option<Run>> {
+        let Some((key, spec)) = key.get(i).and_then(|key| planned.get_key_value(key)) else {
+            return Ok(None);
+        };
+        let failed = status.get(i) == Some("panicked");
+        let cost = cost.get(i).filter(|cost| !failed && cost.is_finite());
+        let coefficients = coefficients.get_as_series(i).unwrap_or_default();
+        Ok(Some(Run {
+            key: (*key).to_owned(),
+            optimiser: spec.optimiser,
+            instance: spec.instance,
+            seed: spec.seed,
+            budget: spec.budget,
+            cost: cost.unwrap_or(f64::INFINITY),
+            residual_deg: residual.get(i).unwrap_or(f64::NAN),
+            duration: duration.get(i).unwrap_or(f64::NAN),
+            evaluations: evaluations.get(i).unwrap_or_default(),
+            seconds: seconds.get(i).unwrap_or(f64::NAN),
+            coefficients: coefficients.f64()?.into_no_null_iter().collect(),
+        }))
     };
-    Ok((0..frame.height()).map(row).collect())
+    (0..frame.height()).filter_map(|i| row(i).transpose()).collect()
 }
 
-/// The run with the lowest certified cost, if any run found a motion.
-pub fn best_run(frame: &DataFrame) -> PolarsResult<Option<BestRun>> {
-    let rows = runs(frame)?;
-    let costs = rows.iter().map(|run| run.certified_cost).enumerate();
-    let best = costs.filter(|(_, c)| c.is_finite()).min_by(|(_, a), (_, b)| a.total_cmp(b));
-    let Some((i, _)) = best else { return Ok(None) };
-    let coefficients = frame.column("coefficients")?.list()?.get_as_series(i);
-    let coefficients = coefficients.unwrap_or_default().f64()?.into_no_null_iter().collect();
-    let run = &rows[i];
-    Ok(Some(BestRun {
-        optimiser: run.optimiser.clone(),
-        instance: run.instance.clone(),
-        seed: run.seed,
-        certified_cost: run.certified_cost,
-        duration: run.duration,
-        coefficients,
-    }))
+/// The run with the lowest cost, if any run found a motion.
+pub fn best_run(runs: &[Run]) -> Option<&Run> {
+    let found = runs.iter().filter(|run| run.cost.is_finite());
+    found.min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
 /// Groups runs by instance and optimiser, in the order of their first row.

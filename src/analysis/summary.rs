@@ -2,7 +2,8 @@
 
 use polars::prelude::*;
 
-use super::runs::{Run, groups, runs};
+use super::runs::{Run, groups};
+use crate::experiment::Plan;
 
 /// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7), of
 /// sorted values; an infinite neighbour makes it infinite.
@@ -12,54 +13,51 @@ pub(super) fn quantile(sorted: &[f64], q: f64) -> f64 {
     if low == high { low } else { low + (high - low) * position.fract() }
 }
 
-/// The summary of a `runs` table: quartiles of the best cost over the seeds, failures counted as
-/// infinite, and the best motion's residual \[°\] and duration \[s\]. A column for each target says
-/// how many runs reached it.
-pub fn summary(frame: &DataFrame, targets: &[f64]) -> PolarsResult<DataFrame> {
-    let runs = runs(frame)?;
-    let groups = groups(&runs);
-    let column = |value: fn(&[&Run]) -> f64| groups.iter().map(|g| value(g)).collect::<Vec<_>>();
-    let best = |g: &[&Run], value: fn(&Run) -> f64| {
-        g.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).map_or(f64::NAN, |run| value(run))
+/// One line an optimiser and instance: quartiles of the best cost over the seeds, failures counted
+/// as infinite, and the best motion's residual \[°\] and duration \[s\]. A column for each of the
+/// plan's targets says how many runs reached it. Costs are certified.
+pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
+    let groups = groups(runs);
+    let reals = |value: &dyn Fn(&[&Run]) -> f64| -> Vec<f64> {
+        groups.iter().map(|group| value(group)).collect()
     };
+    let counts = |value: &dyn Fn(&[&Run]) -> u64| -> Vec<u64> {
+        groups.iter().map(|group| value(group)).collect()
+    };
+    let best = |group: &[&Run], value: fn(&Run) -> f64| {
+        let best = group.iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
+        best.map_or(f64::NAN, |run| value(run))
+    };
+    let instance = |g: &Vec<&Run>| plan.instances[g[0].instance].label.as_str();
+    let optimiser = |g: &Vec<&Run>| plan.optimisers[g[0].optimiser].label.as_str();
     let mut table = df!(
-        "instance" => groups.iter().map(|g| g[0].instance.as_str()).collect::<Vec<_>>(),
-        "optimiser" => groups.iter().map(|g| g[0].optimiser.as_str()).collect::<Vec<_>>(),
-        "runs" => groups.iter().map(|g| g.len() as u64).collect::<Vec<_>>(),
-        "failed" => groups
-            .iter()
-            .map(|g| g.iter().filter(|run| !run.cost.is_finite() || run.status == "panicked").count() as u64)
-            .collect::<Vec<_>>(),
-        "best J" => column(|g| cost_quantile(g, 0.0)),
-        "lower quartile" => column(|g| cost_quantile(g, 0.25)),
-        "median J" => column(|g| cost_quantile(g, 0.5)),
-        "upper quartile" => column(|g| cost_quantile(g, 0.75)),
-        "residual [°]" => groups.iter().map(|g| best(g, |run| run.residual_deg)).collect::<Vec<_>>(),
-        "t_f [s]" => groups.iter().map(|g| best(g, |run| run.duration)).collect::<Vec<_>>(),
-        "evaluations" => groups
-            .iter()
-            .map(|g| g.iter().map(|run| run.evaluations).sum::<u64>())
-            .collect::<Vec<_>>(),
-        "seconds a run" => column(|g| {
-            let mut seconds: Vec<f64> = g.iter().map(|run| run.seconds).collect();
-            seconds.sort_by(f64::total_cmp);
-            quantile(&seconds, 0.5)
-        }),
+        "instance" => groups.iter().map(instance).collect::<Vec<_>>(),
+        "optimiser" => groups.iter().map(optimiser).collect::<Vec<_>>(),
+        "runs" => counts(&|g| g.len() as u64),
+        "failed" => counts(&|g| g.iter().filter(|run| run.cost.is_infinite()).count() as u64),
+        "best J" => reals(&|g| quantile_of(g, |run| run.cost, 0.0)),
+        "lower quartile" => reals(&|g| quantile_of(g, |run| run.cost, 0.25)),
+        "median J" => reals(&|g| quantile_of(g, |run| run.cost, 0.5)),
+        "upper quartile" => reals(&|g| quantile_of(g, |run| run.cost, 0.75)),
+        "residual [°]" => reals(&|g| best(g, |run| run.residual_deg)),
+        "t_f [s]" => reals(&|g| best(g, |run| run.duration)),
+        "evaluations in all" => counts(&|g| g.iter().map(|run| run.evaluations).sum()),
+        "median seconds" => reals(&|g| quantile_of(g, |run| run.seconds, 0.5)),
     )?;
-    for &target in targets {
+    for target in &plan.targets {
         let reached = |g: &Vec<&Run>| {
-            format!("{}/{}", g.iter().filter(|run| run.cost <= target).count(), g.len())
+            format!("{}/{}", g.iter().filter(|run| run.cost <= *target).count(), g.len())
         };
-        let counts: Vec<String> = groups.iter().map(reached).collect();
-        table.with_column(Column::new(format!("J ≤ {target}").into(), counts))?;
+        let reached: Vec<String> = groups.iter().map(reached).collect();
+        table.with_column(Column::new(format!("J ≤ {target}").into(), reached))?;
     }
     Ok(table)
 }
 
-fn cost_quantile(group: &[&Run], q: f64) -> f64 {
-    let mut costs: Vec<f64> = group.iter().map(|run| run.cost).collect();
-    costs.sort_by(f64::total_cmp);
-    quantile(&costs, q)
+fn quantile_of(group: &[&Run], value: fn(&Run) -> f64, q: f64) -> f64 {
+    let mut values: Vec<f64> = group.iter().map(|run| value(run)).collect();
+    values.sort_by(f64::total_cmp);
+    quantile(&values, q)
 }
 
 #[cfg(test)]

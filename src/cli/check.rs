@@ -49,19 +49,19 @@ impl Check {
         match Kind::of(&document)? {
             Kind::Robot => {
                 let file = RobotFile::read(&document)?;
-                print_resolved("robot", &file);
+                print_resolved("robot", &file)?;
                 warn_of(&Robot::from(file));
             }
             Kind::Replay => {
                 let file = ReplayFile::read(&document)?;
                 warn_of(&file.build(&document)?.problem.task().robot);
-                print_resolved("motion to replay", &file);
+                print_resolved("motion to replay", &file)?;
             }
             Kind::Task => {
                 let file = TaskFile::read(&document)?;
                 let (problem, _) = file.build(&document)?;
                 warn_of(&problem.task().robot);
-                print_resolved("task", &file);
+                print_resolved("task", &file)?;
             }
             Kind::Experiment => check_experiment(&document)?,
         }
@@ -75,7 +75,7 @@ fn check_experiment(document: &Document) -> Result<(), CliError> {
     let file = ExperimentFile::read(document)?;
     let plan = Plan::new(&file, document)?;
     warn_of(&plan.instances[0].problem.task().robot);
-    print_resolved("experiment", &file);
+    print_resolved("experiment", &file)?;
     let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
     println!(
         "\n# {} runs: {instances} instances × {optimisers} optimisers × {} seeds",
@@ -91,7 +91,8 @@ fn check_experiment(_: &Document) -> Result<(), CliError> {
     Err(CliError::Usage { message, help: None })
 }
 
-fn print_resolved(kind: &str, file: &impl Serialize) {
+fn print_resolved(kind: &str, file: &impl Serialize) -> Result<(), CliError> {
     println!("# {kind}, with every default filled in");
-    print!("{}", toml::to_string(file).unwrap_or_default());
+    print!("{}", toml::to_string(file)?);
+    Ok(())
 }

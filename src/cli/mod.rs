@@ -88,6 +88,9 @@ enum CliError {
     #[cfg(feature = "harness")]
     #[error(transparent)]
     Table(#[from] polars::error::PolarsError),
+    /// A file could not be put into words.
+    #[error("cannot write what was resolved")]
+    Resolved(#[from] toml::ser::Error),
     /// A file could not be written.
     #[error(transparent)]
     File(#[from] crate::output::FileError),
@@ -149,7 +152,13 @@ fn watch() -> Arc<Watch> {
         let watch = Arc::new(Watch::default());
         let handler = watch.clone();
         // Without a handler Ctrl-C still ends the program, only less gracefully.
-        let _ = ctrlc::set_handler(move || handler.interrupt());
+        let _ = ctrlc::set_handler(move || {
+            if handler.is_interrupted() {
+                // The second time, at once: what is being written is in a temporary file.
+                std::process::exit(130);
+            }
+            handler.interrupt();
+        });
         watch
     });
     WATCH.clone()

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::CliError;
 use crate::export::{self, MotionFormat, write_motion};
 use crate::problem::{Assessment, Motion, Reorientation};
-use crate::trajectory::Peaks;
+use crate::trajectory::Family;
 
 /// Where to write a motion.
 #[derive(Debug, Args)]
@@ -62,18 +62,60 @@ impl MotionFiles {
     }
 }
 
-/// Largest rate, acceleration and jerk of each joint.
+/// What is known of a motion, as JSON.
 #[derive(Debug, Serialize)]
-pub(super) struct PeaksDeg {
+pub(super) struct AssessmentJson {
+    j: f64,
+    t_f: f64,
+    residual_deg: f64,
+    penalty: f64,
+    peaks: PeaksDeg,
+}
+
+#[derive(Debug, Serialize)]
+struct PeaksDeg {
     rate_deg_s: Vec<f64>,
     acceleration_deg_s2: Vec<f64>,
     jerk_deg_s3: Vec<f64>,
 }
 
-impl From<&Peaks> for PeaksDeg {
-    fn from(peaks: &Peaks) -> Self {
-        let all = |k: usize| peaks.0.iter().map(|p| p[k].value.to_degrees()).collect();
-        Self { rate_deg_s: all(0), acceleration_deg_s2: all(1), jerk_deg_s3: all(2) }
+impl From<&Assessment> for AssessmentJson {
+    fn from(assessment: &Assessment) -> Self {
+        let all = |k: usize| assessment.peaks.0.iter().map(|p| p[k].value.to_degrees()).collect();
+        Self {
+            j: assessment.cost,
+            t_f: assessment.duration,
+            residual_deg: assessment.residual().to_degrees(),
+            penalty: assessment.penalty(),
+            peaks: PeaksDeg {
+                rate_deg_s: all(0),
+                acceleration_deg_s2: all(1),
+                jerk_deg_s3: all(2),
+            },
+        }
+    }
+}
+
+/// The shape of a motion, as JSON: the paper's parameters only for its own family.
+#[derive(Debug, Serialize)]
+pub(super) struct ShapeJson {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alpha6: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alpha7: Option<Vec<f64>>,
+    coefficients: Vec<Vec<f64>>,
+}
+
+impl ShapeJson {
+    pub(super) fn new(family: &Family, coefficients: &[f64], duration: f64) -> Self {
+        let alpha = family.to_alpha(coefficients, duration);
+        let mut powers = alpha.chunks_exact(family.joints()).map(<[f64]>::to_vec);
+        let two = family.terms() == 2;
+        Self {
+            alpha6: powers.next().filter(|_| two),
+            alpha7: powers.next().filter(|_| two),
+            coefficients: coefficients.chunks_exact(family.terms()).map(<[f64]>::to_vec).collect(),
+        }
     }
 }
 

@@ -1,6 +1,5 @@
 //! `driftless plan`.
 
-use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -8,13 +7,13 @@ use std::time::Instant;
 use clap::Args;
 use serde::Serialize;
 
-use super::motion::{MotionFiles, PeaksDeg, Told};
+use super::motion::{AssessmentJson, MotionFiles, ShapeJson, Told};
 use super::progress::Bar;
 use super::{CliError, read_or, shown, warn_of, watch};
 use crate::input::nearest;
 use crate::optimiser::Settings;
-use crate::oracle::{Budget, Oracle, Rng, Stop};
-use crate::problem::{Accuracy, Assessment, Formulated, TaskFile};
+use crate::oracle::{Oracle, Rng, Stop};
+use crate::problem::{Assessment, Formulated, TaskFile};
 
 /// Find the best motion for one task
 #[derive(Debug, Args)]
@@ -29,8 +28,8 @@ pub(super) struct Plan {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Evaluations to spend
-    #[arg(long, value_name = "N", default_value = "150000")]
-    budget: NonZeroU64,
+    #[arg(long, value_name = "N", default_value_t = 150_000, value_parser = clap::value_parser!(u64).range(1..))]
+    budget: u64,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -44,16 +43,10 @@ struct PlanJson<'a> {
     optimiser: &'a str,
     seed: u64,
     terms: usize,
-    j: f64,
-    t_f: f64,
-    residual_deg: f64,
-    penalty: f64,
-    peaks: PeaksDeg,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    alpha6: Option<&'a [f64]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    alpha7: Option<&'a [f64]>,
-    coefficients: Vec<&'a [f64]>,
+    #[serde(flatten)]
+    assessment: AssessmentJson,
+    #[serde(flatten)]
+    shape: ShapeJson,
     evaluations: u64,
     linearisations: u64,
     conic_solves: u64,
@@ -104,50 +97,38 @@ impl Plan {
 
     fn search(&self, settings: &Settings, problem: Formulated) -> Result<Found, CliError> {
         let watch = watch();
-        let budget = Budget { evaluations: self.budget.get(), target: None };
-        let mut oracle = Oracle::new(&problem, budget, &watch);
+        let mut oracle = Oracle::new(&problem, self.budget, &watch);
         let started = Instant::now();
         let stop = {
-            let _bar = Bar::new(budget.evaluations, watch.clone());
+            let _bar = Bar::new(self.budget, watch.clone());
             settings.optimiser().minimise(&mut oracle, &mut Rng::new(self.seed))
         };
         let seconds = started.elapsed().as_secs_f64();
         let evaluations = oracle.evaluations();
+        let interrupted = stop == Err(Stop::Interrupted);
         let Some(best) = oracle.best().cloned() else {
-            return Err(CliError::NoMotion);
+            return Err(if interrupted {
+                CliError::Interrupted("no motion was found before".to_owned())
+            } else {
+                CliError::NoMotion
+            });
         };
-        let (coefficients, duration) = problem.decode(&best.x);
-        let certified = problem.task().with_accuracy(Accuracy::FINE);
-        Ok(Found {
-            assessment: certified.assess(&coefficients, duration),
-            coefficients,
-            evaluations,
-            seconds,
-            interrupted: stop == Err(Stop::Interrupted),
-            problem,
-        })
+        let (coefficients, assessment) = problem.certify(&best.x);
+        Ok(Found { problem, coefficients, assessment, evaluations, seconds, interrupted })
     }
 
     fn json(&self, found: &Found) -> String {
         let Found { assessment, coefficients, .. } = found;
         let family = found.problem.task().family();
-        let alpha = family.to_alpha(coefficients, assessment.duration);
-        let mut powers = alpha.chunks_exact(family.joints());
-        let two = family.terms() == 2;
         let json = PlanJson {
             task: shown(self.file.as_ref(), "xiao2023"),
             optimiser: &self.optimiser,
             seed: self.seed,
             terms: family.terms(),
-            j: assessment.cost,
-            t_f: assessment.duration,
-            residual_deg: assessment.residual().to_degrees(),
-            penalty: assessment.penalty(),
-            peaks: (&assessment.peaks).into(),
-            alpha6: powers.next().filter(|_| two),
-            alpha7: powers.next().filter(|_| two),
-            coefficients: coefficients.chunks_exact(family.terms()).collect(),
+            assessment: assessment.into(),
+            shape: ShapeJson::new(family, coefficients, assessment.duration),
             evaluations: found.evaluations,
+            // No optimiser of the field uses derivatives or conic subproblems.
             linearisations: 0,
             conic_solves: 0,
             seconds: found.seconds,

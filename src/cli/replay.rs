@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::motion::{MotionFiles, PeaksDeg, Told};
+use super::motion::{AssessmentJson, MotionFiles, ShapeJson, Told};
 use super::{CliError, read_or, shown, warn_of};
 use crate::problem::{Published, Reading, ReplayFile};
 
@@ -23,18 +23,15 @@ pub(super) struct Replay {
 }
 
 #[derive(Debug, Serialize)]
-struct ReplayJson<'a> {
-    published: PublishedJson<'a>,
+struct ReplayJson {
+    published: PublishedJson,
     readings: Vec<ReadingJson>,
 }
 
 #[derive(Debug, Serialize)]
-struct PublishedJson<'a> {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    alpha6: Option<&'a [f64]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    alpha7: Option<&'a [f64]>,
-    coefficients: Vec<&'a [f64]>,
+struct PublishedJson {
+    #[serde(flatten)]
+    shape: ShapeJson,
     t_f: f64,
     j: Option<f64>,
 }
@@ -42,11 +39,8 @@ struct PublishedJson<'a> {
 #[derive(Debug, Serialize)]
 struct ReadingJson {
     reading: Reading,
-    j: f64,
-    residual_deg: f64,
-    penalty: f64,
-    t_f: f64,
-    peaks: PeaksDeg,
+    #[serde(flatten)]
+    assessment: AssessmentJson,
 }
 
 impl Replay {
@@ -76,28 +70,14 @@ impl Replay {
 }
 
 fn json(published: &Published) -> String {
-    let family = published.problem.family();
-    let two = family.terms() == 2;
-    let alpha = family.to_alpha(&published.coefficients, published.duration);
-    let mut powers = alpha.chunks_exact(family.joints());
-    let readings = Reading::ALL.map(|reading| {
-        let assessment = published.assess(reading);
-        ReadingJson {
-            reading,
-            j: assessment.cost,
-            residual_deg: assessment.residual().to_degrees(),
-            penalty: assessment.penalty(),
-            t_f: assessment.duration,
-            peaks: (&assessment.peaks).into(),
-        }
-    });
+    let Published { problem, coefficients, duration, cost } = published;
+    let readings = Reading::ALL
+        .map(|reading| ReadingJson { reading, assessment: (&published.assess(reading)).into() });
     let json = ReplayJson {
         published: PublishedJson {
-            alpha6: powers.next().filter(|_| two),
-            alpha7: powers.next().filter(|_| two),
-            coefficients: published.coefficients.chunks_exact(family.terms()).collect(),
-            t_f: published.duration,
-            j: published.cost,
+            shape: ShapeJson::new(problem.family(), coefficients, *duration),
+            t_f: *duration,
+            j: *cost,
         },
         readings: readings.into(),
     };

@@ -7,11 +7,13 @@ use clap::Args;
 
 use super::progress::Bar;
 use super::{CliError, read_or, warn_of, watch};
-use crate::analysis::{BestRun, best_run, convergence, render, summary};
-use crate::experiment::{self, ExperimentFile, Plan, Progress, Record, Shard, Store};
-use crate::output::{create_folder, write_file};
+use crate::analysis::{self, best_run, convergence, render, summary};
+use crate::experiment::{self, ExperimentFile, Plan, Progress, Record, RunSpec, Shard, Store};
+use crate::input::Document;
+use crate::output::write_file;
 use crate::plot;
 use crate::problem::Motion;
+use crate::robot::RobotFile;
 
 /// Run an experiment: every optimiser on every instance for every seed
 #[derive(Debug, Args)]
@@ -42,15 +44,19 @@ pub(super) struct Run {
 /// Prints a line for every run that ends.
 struct Lines<'a> {
     bar: &'a Bar,
+    plan: &'a Plan,
 }
 
 impl Progress for Lines<'_> {
-    fn finished(&self, record: &Record) {
-        let Record { optimiser, instance, seed, cost, status, .. } = record;
+    fn finished(&self, run: &RunSpec, record: &Record) {
+        let optimiser = &self.plan.optimisers[run.optimiser].label;
+        let instance = &self.plan.instances[run.instance].label;
         let space = if instance.is_empty() { "" } else { " " };
         self.bar.line(&format!(
-            "{optimiser}{space}{instance} seed {seed}: J {cost:.6}, {}",
-            status.name()
+            "{optimiser}{space}{instance} seed {}: J {:.6}, {}",
+            run.seed,
+            record.cost,
+            record.status.name()
         ));
     }
 }
@@ -61,56 +67,38 @@ impl Run {
         let mut file = ExperimentFile::read(&document)?;
         file.seeds = self.seeds.unwrap_or(file.seeds);
         file.budget.evaluations = self.budget.unwrap_or(file.budget.evaluations);
-        let mut plan = Plan::new(&file, &document)?;
-        if let Some(shard) = self.shard {
-            plan = plan.shard(shard);
-        }
+        let plan = Plan::new(&file, &document)?;
         warn_of(&plan.instances[0].problem.task().robot);
-
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
         let store = Store::open(&folder)?;
-        write_file(
-            &folder.join("experiment.toml"),
-            toml::to_string(&file).unwrap_or_default().as_bytes(),
-        )?;
-        if self.fresh {
-            store.remove(plan.runs.iter().map(|run| &run.key))?;
-        }
+        keep_inputs(file, &document, &folder)?;
         self.run_missing(&plan, &store, &folder)?;
-
-        let keys = || plan.runs.iter().map(|run| run.key.as_str());
-        let runs = store.read("runs", keys())?;
-        println!("{}", render(&summary(&runs, &plan.targets)?)?);
-        let figures = folder.join("figures");
-        create_folder(&figures)?;
-        let curves = convergence(&runs, &store.read("traces", keys())?)?;
-        plot::convergence(&curves).save(&figures, "convergence")?;
-        if let Some(best) = best_run(&runs)? {
-            show_best(&plan, &best, &figures)?;
-        }
-        println!("results: {}", folder.display());
-        Ok(())
+        report(&plan, &store, &folder)
     }
 
     fn run_missing(&self, plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
         let watch = watch();
-        let missing = plan.runs.iter().filter(|run| !store.has(&run.key));
-        let (count, evaluations) =
-            missing.fold((0, 0), |(n, sum), run| (n + 1, sum + run.budget.evaluations));
-        let stored = plan.runs.len() - count;
-        if stored > 0 {
-            eprintln!("{stored} of {} runs are stored already", plan.runs.len());
+        let mine = |place: usize| self.shard.is_none_or(|shard| shard.holds(place));
+        let places = plan.runs.iter().enumerate();
+        let mine: Vec<&RunSpec> = places.filter(|(i, _)| mine(*i)).map(|(_, run)| run).collect();
+        if self.fresh {
+            store.remove(mine.iter().map(|run| &run.key))?;
+        }
+        let missing = mine.iter().filter(|run| !store.has(&run.key));
+        let (count, evaluations) = missing.fold((0, 0), |(n, sum), run| (n + 1, sum + run.budget));
+        if count < mine.len() {
+            eprintln!("{} of {} runs are stored already", mine.len() - count, mine.len());
         }
         let jobs = self.jobs.map_or_else(default_jobs, NonZeroUsize::get);
         {
             let bar = Bar::new(evaluations, watch.clone());
-            experiment::run(plan, store, jobs, &watch, &Lines { bar: &bar })?;
+            experiment::run(plan, &mine, store, jobs, &watch, &Lines { bar: &bar, plan })?;
         }
         if watch.is_interrupted() {
-            let stored = plan.runs.iter().filter(|run| store.has(&run.key)).count();
+            let stored = mine.iter().filter(|run| store.has(&run.key)).count();
             return Err(CliError::Interrupted(format!(
                 "{stored} of {} runs are stored in {}; the same command goes on from there",
-                plan.runs.len(),
+                mine.len(),
                 folder.display()
             )));
         }
@@ -118,25 +106,47 @@ impl Run {
     }
 }
 
-fn default_jobs() -> usize {
-    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
+/// Keeps what the experiment was, so that it can be run again from its results.
+fn keep_inputs(
+    mut file: ExperimentFile,
+    document: &Document,
+    folder: &Path,
+) -> Result<(), CliError> {
+    if let Some(path) = file.task.robot_file(document) {
+        let robot = RobotFile::read(&Document::read(&path)?)?;
+        write_file(&folder.join("robot.toml"), toml::to_string(&robot)?.as_bytes())?;
+        file.task = file.task.with_robot("robot.toml");
+    }
+    Ok(write_file(&folder.join("experiment.toml"), toml::to_string(&file)?.as_bytes())?)
 }
 
-/// Says which motion is best and draws it.
-fn show_best(plan: &Plan, best: &BestRun, figures: &Path) -> Result<(), CliError> {
-    let Some(instance) = plan.instances.iter().find(|i| i.label == best.instance) else {
-        return Ok(());
-    };
-    println!(
-        "best motion: {}{}{}, seed {}: J {:.6}, t_f {:.4} s",
-        best.optimiser,
-        if best.instance.is_empty() { "" } else { " on " },
-        best.instance,
-        best.seed,
-        best.certified_cost,
-        best.duration
-    );
-    let problem = &instance.problem;
-    let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
-    Ok(plot::write_motion_figures(figures, &motion, problem.task())?)
+/// Prints the summary of all stored runs of the plan and draws them.
+fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
+    let keys = || plan.runs.iter().map(|run| run.key.as_str());
+    let runs = analysis::runs(plan, &store.read("runs", keys())?)?;
+    if runs.len() < plan.runs.len() {
+        println!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
+    }
+    println!("{}", render(&summary(plan, &runs)?)?);
+    let figures = folder.join("figures");
+    let curves = convergence(plan, &runs, &store.read("traces", keys())?)?;
+    plot::convergence(&curves).save(&figures, "convergence")?;
+    if let Some(best) = best_run(&runs) {
+        let instance = &plan.instances[best.instance];
+        let optimiser = &plan.optimisers[best.optimiser].label;
+        let on = if instance.label.is_empty() { "" } else { " on " };
+        println!(
+            "best motion: {optimiser}{on}{}, seed {}: J {:.6}, t_f {:.4} s",
+            instance.label, best.seed, best.cost, best.duration
+        );
+        let problem = &instance.problem;
+        let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
+        plot::write_motion_figures(&figures, &motion, problem.task())?;
+    }
+    println!("results: {}, figures: {}", folder.display(), figures.display());
+    Ok(())
+}
+
+fn default_jobs() -> usize {
+    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }

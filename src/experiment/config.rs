@@ -6,7 +6,7 @@ use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use crate::input::{Document, InputError, count, finite_list, fraction, positive};
+use crate::input::{Document, Finite, Fraction, InputError, Positive, count};
 use crate::optimiser::Settings;
 use crate::problem::{DEFAULTS as TASK_DEFAULTS, TrajectoryTable};
 use crate::task::TaskTable;
@@ -21,13 +21,12 @@ pub struct ExperimentFile {
     #[serde(deserialize_with = "folder_name")]
     pub name: String,
     /// Number of seeds; they are 1, 2, … and the same for every optimiser and instance.
-    #[serde(deserialize_with = "count")]
+    #[serde(deserialize_with = "count::<1_000_000, _, _>")]
     pub seeds: NonZeroU64,
     /// What each run may spend.
     pub budget: BudgetTable,
     /// Costs whose success rate the summary shows.
-    #[serde(deserialize_with = "finite_list")]
-    pub targets: Vec<f64>,
+    pub targets: Vec<Finite>,
     /// The task that the sweep varies.
     pub task: TaskTable,
     /// The family to search and how.
@@ -43,7 +42,7 @@ pub struct ExperimentFile {
 #[serde(deny_unknown_fields, expecting = "a table")]
 pub struct BudgetTable {
     /// Evaluations a run.
-    #[serde(deserialize_with = "count")]
+    #[serde(deserialize_with = "count::<1_000_000_000_000, _, _>")]
     pub evaluations: NonZeroU64,
 }
 
@@ -53,28 +52,20 @@ pub struct BudgetTable {
 pub struct Sweep {
     /// `K_b`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub weight_base: Vec<Weight>,
+    pub weight_base: Vec<Fraction>,
     /// The same limit for all joints \[°/s\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub rate_limit_deg_s: Vec<Limit>,
+    pub rate_limit_deg_s: Vec<Positive>,
     /// The same limit for all joints \[°/s²\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub acceleration_limit_deg_s2: Vec<Limit>,
+    pub acceleration_limit_deg_s2: Vec<Positive>,
     /// The same limit for all joints \[°/s³\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub jerk_limit_deg_s3: Vec<Limit>,
+    pub jerk_limit_deg_s3: Vec<Positive>,
     /// Free coefficients a joint.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub terms: Vec<Spanned<usize>>,
 }
-
-/// A weight from 0 to 1.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Weight(#[serde(deserialize_with = "fraction")] pub f64);
-
-/// A limit above zero.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Limit(#[serde(deserialize_with = "positive")] pub f64);
 
 impl ExperimentFile {
     /// Reads an experiment; the task it leaves out is the paper's.

@@ -1,6 +1,6 @@
 //! An experiment spelt out: every instance, every run, every key.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -9,10 +9,9 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::ExperimentFile;
-use crate::input::{Document, InputError};
+use crate::input::{Document, InputError, Positive};
 use crate::optimiser::Settings;
-use crate::oracle::Budget;
-use crate::problem::{Boxes, Formulated, Reorientation};
+use crate::problem::{Accuracy, Boxes, Formulated, Reorientation};
 use crate::task::Task;
 
 /// Raised when a change makes the same run give another result.
@@ -29,7 +28,7 @@ pub struct Plan {
     pub instances: Vec<Instance>,
     /// The field.
     pub optimisers: Vec<Entrant>,
-    /// All runs, in the order in which they start.
+    /// All runs, instance by instance, optimiser by optimiser, seed by seed.
     pub runs: Vec<RunSpec>,
 }
 
@@ -56,16 +55,18 @@ pub struct Entrant {
 /// One optimiser on one instance with one seed.
 #[derive(Debug, Clone)]
 pub struct RunSpec {
-    /// Hash of everything that determines the run's result.
+    /// Hash of the recipe.
     pub key: String,
+    /// Everything that determines the run's result, as JSON.
+    pub recipe: String,
     /// Index of the instance.
     pub instance: usize,
     /// Index of the optimiser.
     pub optimiser: usize,
     /// The seed.
     pub seed: u64,
-    /// What the run may spend.
-    pub budget: Budget,
+    /// Evaluations that the run may spend.
+    pub budget: u64,
 }
 
 /// A disjoint part of an experiment, `index` of `count`, counted from zero.
@@ -88,40 +89,39 @@ impl FromStr for Shard {
     }
 }
 
+impl Shard {
+    /// Whether the run at this place of a plan belongs to the shard.
+    pub fn holds(self, place: usize) -> bool {
+        place % self.count == self.index
+    }
+}
+
 impl Plan {
-    /// Spells an experiment out.
+    /// Spells an experiment out. Two runs that would be the same are a mistake.
     pub fn new(file: &ExperimentFile, document: &Document) -> Result<Self, InputError> {
         let task = file.task.build(document)?;
         let instances = instances(file, &task, document)?;
         let optimisers = entrants(file.optimiser.get_ref());
-        let budget = Budget { evaluations: file.budget.evaluations.get(), target: None };
+        let budget = file.budget.evaluations.get();
         let mut runs = Vec::new();
         for (i, instance) in instances.iter().enumerate() {
             for (o, entrant) in optimisers.iter().enumerate() {
-                runs.extend((1..=file.seeds.get()).map(|seed| RunSpec {
-                    key: key(instance, &entrant.settings, seed, budget),
-                    instance: i,
-                    optimiser: o,
-                    seed,
-                    budget,
+                runs.extend((1..=file.seeds.get()).map(|seed| {
+                    let recipe = recipe(instance, &entrant.settings, seed, budget);
+                    RunSpec { key: hash(&recipe), recipe, instance: i, optimiser: o, seed, budget }
                 }));
             }
         }
-        Ok(Self {
-            name: file.name.clone(),
-            targets: file.targets.clone(),
-            instances,
-            optimisers,
-            runs,
-        })
-    }
-
-    /// Only the runs of one shard.
-    #[must_use]
-    pub fn shard(mut self, shard: Shard) -> Self {
-        let mut position = 0..;
-        self.runs.retain(|_| position.next().is_some_and(|p| p % shard.count == shard.index));
-        self
+        let mut keys = HashSet::new();
+        if let Some(twin) = runs.iter().find(|run| !keys.insert(&run.key)) {
+            let message = format!(
+                "{} stands twice with the same settings, or a list of the sweep repeats a value",
+                optimisers[twin.optimiser].label
+            );
+            return Err(document.error_at(file.optimiser.span(), message, None));
+        }
+        let targets = file.targets.iter().map(|target| target.0).collect();
+        Ok(Self { name: file.name.clone(), targets, instances, optimisers, runs })
     }
 
     /// The problem as a run's optimiser sees it.
@@ -176,7 +176,7 @@ fn instances(
         drafts.iter().flat_map(|draft| values.iter().map(|value| with(draft, value))).collect()
     }
     let limit = |order: usize| {
-        move |draft: &mut Draft, limit: &super::config::Limit| {
+        move |draft: &mut Draft, limit: &Positive| {
             draft.task.limits.0.iter_mut().for_each(|l| l[order] = limit.0.to_radians());
             limit.0.to_string()
         }
@@ -203,20 +203,21 @@ fn instances(
     drafts.into_iter().map(build).collect()
 }
 
-/// Hash of everything that determines a run's result, as 16 hexadecimal digits.
-fn key(instance: &Instance, settings: &Settings, seed: u64, budget: Budget) -> String {
+/// Everything that determines a run's result, as JSON.
+#[expect(clippy::expect_used, reason = "plain data has a JSON form")]
+fn recipe(instance: &Instance, settings: &Settings, seed: u64, budget: u64) -> String {
     #[derive(Serialize)]
-    struct Determines<'a> {
+    struct Recipe<'a> {
         version: u32,
         task: &'a Task,
         terms: usize,
-        accuracy: crate::problem::Accuracy,
+        accuracy: Accuracy,
         boxes: &'a Boxes,
         optimiser: &'a Settings,
         seed: u64,
         evaluations: u64,
     }
-    let all = Determines {
+    let recipe = Recipe {
         version: PROBLEM_VERSION,
         task: instance.problem.task(),
         terms: instance.problem.family().terms(),
@@ -224,9 +225,13 @@ fn key(instance: &Instance, settings: &Settings, seed: u64, budget: Budget) -> S
         boxes: &instance.boxes,
         optimiser: settings,
         seed,
-        evaluations: budget.evaluations,
+        evaluations: budget,
     };
-    let text = serde_json::to_string(&all).unwrap_or_default();
+    serde_json::to_string(&recipe).expect("a recipe is plain data")
+}
+
+/// The first 16 hexadecimal digits of a text's SHA-256.
+fn hash(text: &str) -> String {
     Sha256::digest(text).iter().take(8).fold(String::new(), |mut hex, byte| {
         let _ = write!(hex, "{byte:02x}");
         hex

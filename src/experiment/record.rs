@@ -17,8 +17,6 @@ pub enum Status {
     Finished,
     /// Every evaluation was spent.
     BudgetSpent,
-    /// The target was met.
-    TargetReached,
     /// The optimiser or the problem panicked.
     Panicked(String),
 }
@@ -31,7 +29,6 @@ impl Status {
         match outcome {
             Ok(Ok(())) => Some(Self::Finished),
             Ok(Err(Stop::BudgetSpent)) => Some(Self::BudgetSpent),
-            Ok(Err(Stop::TargetReached)) => Some(Self::TargetReached),
             Ok(Err(Stop::Interrupted)) => None,
             Err(payload) => {
                 let message = payload.downcast_ref::<String>().map(String::as_str);
@@ -46,7 +43,6 @@ impl Status {
         match self {
             Self::Finished => "finished",
             Self::BudgetSpent => "budget-spent",
-            Self::TargetReached => "target-reached",
             Self::Panicked(_) => "panicked",
         }
     }
@@ -57,13 +53,7 @@ impl Status {
 pub struct Record {
     /// The run's key.
     pub key: String,
-    /// The optimiser's label.
-    pub optimiser: String,
-    /// The instance's label.
-    pub instance: String,
-    /// The seed.
-    pub seed: u64,
-    /// Best cost as the search evaluated it; NaN when there is none.
+    /// Best cost, certified; NaN when there is none.
     pub cost: f64,
     /// How the run ended.
     pub status: Status,
@@ -75,8 +65,11 @@ pub struct Record {
     pub(super) clock: DataFrame,
 }
 
-/// The best point of a run: as the search evaluated it, as certified, and its coefficients.
-pub(super) type BestFound = (Evaluation, Assessment, Vec<f64>);
+/// The best point of a run: as the search evaluated it, and its motion, certified.
+pub(super) type BestFound = (Evaluation, (Vec<f64>, Assessment));
+
+/// Version of the stored tables; raised when a column changes.
+const FORMAT: u64 = 1;
 
 impl Record {
     pub(super) fn new(
@@ -87,16 +80,11 @@ impl Record {
         seconds: Duration,
         oracle: Oracle<'_>,
     ) -> PolarsResult<Self> {
-        let entrant = &plan.optimisers[run.optimiser];
-        let instance = &plan.instances[run.instance];
-        let cost = best.as_ref().map_or(f64::NAN, |(evaluation, ..)| evaluation.cost);
+        let cost = best.as_ref().map_or(f64::NAN, |(_, (_, certified))| certified.cost);
         let row = row(plan, run, &status, best, seconds, &oracle)?;
         let trace = oracle.into_trace();
         Ok(Self {
             key: run.key.clone(),
-            optimiser: entrant.label.clone(),
-            instance: instance.label.clone(),
-            seed: run.seed,
             cost,
             status,
             row,
@@ -121,7 +109,7 @@ fn row(
     let settings = serde_json::to_string(&entrant.settings).unwrap_or_default();
     let message = if let Status::Panicked(message) = status { message.as_str() } else { "" };
     let (search, certified, coefficients) = match best {
-        Some((evaluation, assessment, coefficients)) => {
+        Some((evaluation, (coefficients, assessment))) => {
             (Some(evaluation), Some(assessment), coefficients)
         }
         None => (None, None, Vec::new()),
@@ -131,10 +119,13 @@ fn row(
     let limit = |order: usize| {
         let first = task.limits.0[0][order];
         let uniform = task.limits.0.iter().all(|l| l[order] == first);
-        uniform.then(|| first.to_degrees())
+        // Degrees as written, without the rounding of their way through radians.
+        uniform.then(|| (first.to_degrees() * 1e9).round() / 1e9)
     };
     df!(
+        "format" => [FORMAT],
         "key" => [run.key.as_str()],
+        "recipe" => [run.recipe.as_str()],
         "experiment" => [plan.name.as_str()],
         "optimiser" => [entrant.label.as_str()],
         "formulation" => [entrant.settings.formulation().name()],
@@ -147,7 +138,7 @@ fn row(
         "jerk_limit_deg_s3" => [limit(2)],
         "terms" => [instance.problem.family().terms() as u64],
         "seed" => [run.seed],
-        "budget" => [run.budget.evaluations],
+        "budget" => [run.budget],
         "j" => [search.map(|e| e.cost)],
         "violation" => [search.map(|e| e.violation)],
         "certified_j" => [found(|a| a.cost)],

@@ -7,32 +7,32 @@ use rayon::prelude::*;
 
 use super::{Plan, Record, RunSpec, Status, Store, StoreError};
 use crate::oracle::{Oracle, Rng, Watch};
-use crate::problem::Accuracy;
 
 /// Told of every run that ends.
 pub trait Progress: Sync {
     /// A run is stored.
-    fn finished(&self, record: &Record);
+    fn finished(&self, run: &RunSpec, record: &Record);
 }
 
-/// Runs every run of the plan that the store does not have, on `jobs` threads.
+/// Does those of `runs` that the store does not have, on `jobs` threads.
 ///
 /// What a run gives does not depend on the other runs. A run that the user interrupts leaves
 /// nothing behind; one that fails leaves a record that says so.
 pub fn run(
     plan: &Plan,
+    runs: &[&RunSpec],
     store: &Store,
     jobs: usize,
     watch: &Watch,
     progress: &dyn Progress,
 ) -> Result<(), RunError> {
-    let missing: Vec<&RunSpec> = plan.runs.iter().filter(|run| !store.has(&run.key)).collect();
+    let missing: Vec<_> = runs.iter().filter(|run| !store.has(&run.key)).collect();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build()?;
     pool.install(|| {
         missing.par_iter().with_max_len(1).try_for_each(|run| {
             if let Some(record) = one(plan, run, watch)? {
                 store.write(&record)?;
-                progress.finished(&record);
+                progress.finished(run, &record);
             }
             Ok(())
         })
@@ -59,18 +59,20 @@ fn one(plan: &Plan, run: &RunSpec, watch: &Watch) -> Result<Option<Record>, Stor
     let optimiser = plan.optimisers[run.optimiser].settings.optimiser();
     let mut oracle = Oracle::new(&problem, run.budget, watch);
     let started = Instant::now();
-    let outcome =
+    let searched =
         catch_unwind(AssertUnwindSafe(|| optimiser.minimise(&mut oracle, &mut Rng::new(run.seed))));
     let seconds = started.elapsed();
+    let certified = catch_unwind(AssertUnwindSafe(|| {
+        oracle.best().map(|best| (best.evaluation, problem.certify(&best.x)))
+    }));
+    let (outcome, best) = match certified {
+        Ok(best) => (searched, best),
+        Err(panic) => (Err(panic), None),
+    };
     let Some(status) = Status::from_outcome(outcome) else {
         return Ok(None);
     };
     // What the run did not spend will not be spent.
     watch.add_evaluations(oracle.remaining());
-    let best = oracle.best().map(|best| {
-        let (coefficients, duration) = problem.decode(&best.x);
-        let certified = problem.task().with_accuracy(Accuracy::FINE);
-        (best.evaluation, certified.assess(&coefficients, duration), coefficients)
-    });
     Ok(Some(Record::new(plan, run, status, best, seconds, oracle)?))
 }

@@ -4,8 +4,8 @@ mod catalogue;
 mod pso;
 mod random;
 
-pub use catalogue::Settings;
-pub use pso::{BoundHandling, Pso};
+pub use catalogue::{Setting, Settings};
+pub use pso::{Inertia, Pso, Walls};
 pub use random::RandomSearch;
 
 use crate::oracle::{Oracle, Rng, Stop};

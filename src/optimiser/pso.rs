@@ -22,7 +22,7 @@ pub struct Pso {
     /// variables in which the task is searched
     pub formulation: Formulation,
     /// number of particles, `NP`
-    #[serde(deserialize_with = "count")]
+    #[serde(deserialize_with = "count::<1_000_000, _, _>")]
     pub population: NonZeroUsize,
     /// moves of the swarm over which the inertia falls, and after which the swarm rests; without it
     /// as many as the budget allows
@@ -42,8 +42,8 @@ pub struct Pso {
     /// largest velocity component, as a fraction of the box's width
     #[serde(deserialize_with = "fraction")]
     pub velocity_limit: f64,
-    /// what happens to a particle at the wall of the box
-    pub bounds: BoundHandling,
+    /// what happens to a particle at a wall of the box
+    pub walls: Walls,
 }
 
 /// Inertia weights of the first and of the last move.
@@ -61,7 +61,7 @@ pub struct Inertia {
 /// What happens to a particle that would leave the box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum BoundHandling {
+pub enum Walls {
     /// It stays on the wall and loses the velocity that took it there.
     Absorb,
     /// It comes back by as much as it went too far, with its velocity turned round.
@@ -80,7 +80,7 @@ impl Default for Pso {
             social: 2.0,
             delta: 1.0,
             velocity_limit: 0.2,
-            bounds: BoundHandling::Reflect,
+            walls: Walls::Reflect,
         }
     }
 }
@@ -171,13 +171,13 @@ impl Swarm {
                 let to_global = settings.social * rng.unit() * (global[j] - *x);
                 *v = (inertia * *v + to_own + to_global).clamp(-limit, limit);
                 *x += settings.delta * *v;
-                settings.bounds.enforce(x, v, [lower, upper]);
+                settings.walls.enforce(x, v, [lower, upper]);
             }
         }
     }
 }
 
-impl BoundHandling {
+impl Walls {
     fn enforce(self, x: &mut f64, v: &mut f64, [lower, upper]: [f64; 2]) {
         if (lower..=upper).contains(x) {
             return;

@@ -14,21 +14,9 @@ pub enum Stop {
     /// Every evaluation of the budget is spent.
     #[error("budget spent")]
     BudgetSpent,
-    /// A cost as low as asked for was found.
-    #[error("target reached")]
-    TargetReached,
     /// The user wants the program to end.
     #[error("interrupted")]
     Interrupted,
-}
-
-/// What a run may spend and what ends it early.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Budget {
-    /// Evaluations of the problem; never exceeded by one.
-    pub evaluations: u64,
-    /// Ends the run when a cost this low is found.
-    pub target: Option<f64>,
 }
 
 /// Shared with whoever watches a run from outside.
@@ -84,7 +72,7 @@ pub struct TracePoint {
 #[expect(missing_debug_implementations, reason = "a problem need not be printable")]
 pub struct Oracle<'a> {
     problem: &'a dyn Problem,
-    budget: Budget,
+    budget: u64,
     watch: &'a Watch,
     started: Instant,
     in_problem: Duration,
@@ -94,8 +82,8 @@ pub struct Oracle<'a> {
 }
 
 impl<'a> Oracle<'a> {
-    /// An oracle that has spent nothing yet.
-    pub fn new(problem: &'a dyn Problem, budget: Budget, watch: &'a Watch) -> Self {
+    /// An oracle that has spent nothing yet of so many evaluations.
+    pub fn new(problem: &'a dyn Problem, budget: u64, watch: &'a Watch) -> Self {
         Self {
             problem,
             budget,
@@ -115,7 +103,7 @@ impl<'a> Oracle<'a> {
 
     /// Evaluations left.
     pub fn remaining(&self) -> u64 {
-        self.budget.evaluations - self.evaluations
+        self.budget - self.evaluations
     }
 
     /// Evaluations made.
@@ -149,23 +137,19 @@ impl<'a> Oracle<'a> {
     pub fn evaluate_batch(&mut self, points: &Points, out: &mut [Evaluation]) -> Result<(), Stop> {
         self.check()?;
         let affordable = usize::try_from(self.remaining()).unwrap_or(usize::MAX);
-        let cut = (affordable < points.len()).then(|| points.first(affordable));
+        let cut = (affordable < points.len()).then(|| points.prefix(affordable));
         let points = cut.as_ref().unwrap_or(points);
         let clock = Instant::now();
         self.problem.evaluate_batch(points, &mut out[..points.len()]);
         self.in_problem += clock.elapsed();
         for (x, &evaluation) in points.iter().zip(out.iter()) {
             self.record(x, evaluation);
-            // A target met within the batch ends the count there, as if evaluated one by one.
-            if self.target_is_reached() {
-                break;
-            }
         }
         self.watch.add_evaluations(points.len() as u64);
         if cut.is_some() { Err(Stop::BudgetSpent) } else { Ok(()) }
     }
 
-    /// The improvements and the last evaluation, in order.
+    /// The improvements and, unless no cost was a number, the last evaluation, in order.
     pub fn into_trace(mut self) -> Vec<TracePoint> {
         if let (Some(last), Some(best)) = (self.trace.last(), &self.best)
             && last.evaluation < self.evaluations
@@ -182,18 +166,11 @@ impl<'a> Oracle<'a> {
     fn check(&self) -> Result<(), Stop> {
         if self.watch.is_interrupted() {
             Err(Stop::Interrupted)
-        } else if self.target_is_reached() {
-            Err(Stop::TargetReached)
         } else if self.remaining() == 0 {
             Err(Stop::BudgetSpent)
         } else {
             Ok(())
         }
-    }
-
-    fn target_is_reached(&self) -> bool {
-        let best = self.best.as_ref().map(|b| b.evaluation.cost);
-        self.budget.target.is_some_and(|target| best.is_some_and(|cost| cost <= target))
     }
 
     fn record(&mut self, x: &[f64], evaluation: Evaluation) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Bounds, Boxes, Evaluation, Problem, Reorientation};
+use super::{Accuracy, Assessment, Bounds, Boxes, Evaluation, Problem, Reorientation};
 
 /// The variables in which an optimiser sees the task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -73,6 +73,13 @@ impl Formulated {
             (Formulation::Raw, Some(t)) => (self.task.family().from_alpha(shape, t), duration),
             _ => (shape.to_vec(), duration),
         }
+    }
+
+    /// The motion of a point, evaluated finely: its coefficients and what is known of it.
+    pub fn certify(&self, x: &[f64]) -> (Vec<f64>, Assessment) {
+        let (coefficients, duration) = self.decode(x);
+        let assessment = self.task.with_accuracy(Accuracy::FINE).assess(&coefficients, duration);
+        (coefficients, assessment)
     }
 
     /// The point that stands for a motion; its duration is left out where it is no variable.

@@ -100,7 +100,7 @@ impl Points {
 
     /// The first `count` points.
     #[must_use]
-    pub fn first(&self, count: usize) -> Self {
+    pub fn prefix(&self, count: usize) -> Self {
         let values = self.values[..self.dimension * count].to_vec();
         Self { dimension: self.dimension, values }
     }

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::reorientation::{attitude_error, cost};
-use super::settings::DEFAULTS;
+use super::settings::{DEFAULTS, check_terms};
 use super::{Accuracy, Assessment, Reorientation, TrajectoryTable};
-use crate::input::{Document, InputError, finite, finite_list, positive};
+use crate::input::{Document, Finite, InputError, Positive};
 use crate::momentum::base_twist;
 use crate::task::{Posture, Task, TaskTable};
 use crate::trajectory::{Path, Peak, Peaks};
@@ -55,24 +55,15 @@ pub struct ReplayFile {
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct MotionTable {
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    alpha6: Option<Spanned<Numbers>>,
+    alpha6: Option<Spanned<Vec<Finite>>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    alpha7: Option<Spanned<Numbers>>,
+    alpha7: Option<Spanned<Vec<Finite>>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    coefficients: Option<Spanned<Vec<Numbers>>>,
-    t_f: Spanned<Seconds>,
+    coefficients: Option<Spanned<Vec<Vec<Finite>>>>,
+    t_f: Spanned<Positive>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    j: Option<Claim>,
+    j: Option<Finite>,
 }
-
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Numbers(#[serde(deserialize_with = "finite_list")] Vec<f64>);
-
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-struct Seconds(#[serde(deserialize_with = "positive")] f64);
-
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-struct Claim(#[serde(deserialize_with = "finite")] f64);
 
 /// A motion to replay and what was claimed of it.
 #[derive(Debug, Clone)]
@@ -119,20 +110,16 @@ impl ReplayFile {
         let shape = self.shape(task.robot.joint_count(), document)?;
         let terms = match &shape {
             Shape::Alpha(_) => 2,
-            Shape::Coefficients(rows) => rows[0].0.len(),
+            Shape::Coefficients(rows) => rows[0].len(),
         };
-        let terms = Spanned::new(self.motion.span(), terms);
-        let (problem, _) = self.trajectory.with_terms(terms).build(task, document)?;
+        check_terms(terms, self.motion.span(), document)?;
+        let problem = Reorientation::new(task, terms, Accuracy::FINE);
         let coefficients = match shape {
             Shape::Alpha(alpha) => problem.family().from_alpha(&alpha, duration),
-            Shape::Coefficients(rows) => rows.iter().flat_map(|row| row.0.clone()).collect(),
+            Shape::Coefficients(rows) => rows.iter().flatten().map(|c| c.0).collect(),
         };
-        Ok(Published {
-            coefficients,
-            problem: problem.with_accuracy(Accuracy::FINE),
-            duration,
-            cost: motion.j.map(|claim| claim.0),
-        })
+        let cost = motion.j.map(|claim| claim.0);
+        Ok(Published { coefficients, problem, duration, cost })
     }
 
     /// The shape as given, with as many values as the robot has joints.
@@ -142,19 +129,20 @@ impl ReplayFile {
         match (&motion.alpha6, &motion.alpha7, &motion.coefficients) {
             (Some(alpha6), Some(alpha7), None) => {
                 for list in [alpha6, alpha7] {
-                    let found = list.get_ref().0.len();
+                    let found = list.get_ref().len();
                     if found != joints {
                         let message =
                             format!("found {found} values, expected {joints}, one a joint");
                         return error(list.span(), message);
                     }
                 }
-                Ok(Shape::Alpha([&alpha6.get_ref().0[..], &alpha7.get_ref().0].concat()))
+                let all = alpha6.get_ref().iter().chain(alpha7.get_ref());
+                Ok(Shape::Alpha(all.map(|a| a.0).collect()))
             }
             (None, None, Some(list)) => {
                 let rows = list.get_ref();
-                let terms = rows.first().map_or(0, |row| row.0.len());
-                if terms == 0 || rows.len() != joints || rows.iter().any(|r| r.0.len() != terms) {
+                let terms = rows.first().map_or(0, Vec::len);
+                if terms == 0 || rows.len() != joints || rows.iter().any(|row| row.len() != terms) {
                     let message = format!(
                         "expected {joints} rows, one a joint, of equally many coefficients"
                     );
@@ -175,7 +163,7 @@ enum Shape<'a> {
     /// `α_6` of all joints, then `α_7`.
     Alpha(Vec<f64>),
     /// One row a joint.
-    Coefficients(&'a [Numbers]),
+    Coefficients(&'a [Vec<Finite>]),
 }
 
 impl Published {
@@ -243,7 +231,7 @@ fn transposed_attitude(
 
 /// The largest values on a grid from zero that stops short of the end \[rad/s, rad/s², rad/s³\].
 fn sampled_peaks(path: &Path<'_, f64>, duration: f64) -> Peaks {
-    let last = (duration / SAMPLE_STEP).floor() as usize;
+    let last = (duration / SAMPLE_STEP + 1e-9).floor() as usize;
     let peaks = path.joints().map(|joint| {
         (0..=last).fold([Peak::default(); 3], |peak, i| {
             let tau = i as f64 * SAMPLE_STEP / duration;

@@ -54,7 +54,13 @@ pub struct Assessment {
 
 impl Reorientation {
     /// The task over the family with `terms` free coefficients a joint.
+    ///
+    /// # Panics
+    ///
+    /// Panics without a term, a step or an interval, or when the task does not fit its robot.
     pub fn new(task: Arc<Task>, terms: usize, accuracy: Accuracy) -> Self {
+        assert!(accuracy.attitude_steps > 0 && accuracy.peak_intervals > 0, "no accuracy at all");
+        assert_eq!(task.limits.0.len(), task.robot.joint_count(), "limits for every joint");
         let ranges: Vec<_> = task.robot.joints.iter().map(|j| j.range).collect();
         let family = Family::new(&ranges, &task.start.joints, &task.goal.joints, terms);
         Self { task, family, accuracy }

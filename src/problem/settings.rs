@@ -1,13 +1,14 @@
 //! The `[trajectory]` table, and the file of a single task.
 
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::{Accuracy, Reorientation};
-use crate::input::{Document, InputError, count, positive, positive_interval};
+use crate::input::{Document, InputError, Positive, count, positive_interval};
 use crate::task::{Task, TaskTable};
 use crate::trajectory::{Family, Limits, Peaks};
 
@@ -34,10 +35,10 @@ pub struct TrajectoryTable {
     /// Free coefficients a joint; two are the paper's.
     terms: Spanned<usize>,
     /// Magnus steps along the path during a search.
-    #[serde(deserialize_with = "count")]
+    #[serde(deserialize_with = "count::<10_000, _, _>")]
     attitude_steps: NonZeroUsize,
     /// Intervals in which peaks are bracketed during a search.
-    #[serde(deserialize_with = "count")]
+    #[serde(deserialize_with = "count::<100_000, _, _>")]
     peak_intervals: NonZeroUsize,
     /// Where to search.
     #[serde(rename = "box")]
@@ -49,17 +50,14 @@ pub struct TrajectoryTable {
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct BoxTable {
     /// Half-widths for the coefficients of the first, second, … bump; the last serves all further.
-    coefficient: Spanned<Vec<Width>>,
+    coefficient: Spanned<Vec<Positive>>,
     /// Shortest and longest duration \[s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     duration: Option<Duration>,
     /// Half-widths for `α_6`, `α_7`, … \[s⁻⁶, s⁻⁷, …\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    alpha: Option<Spanned<Vec<Width>>>,
+    alpha: Option<Spanned<Vec<Positive>>>,
 }
-
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-struct Width(#[serde(deserialize_with = "positive")] f64);
 
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Duration(#[serde(deserialize_with = "positive_interval")] [f64; 2]);
@@ -112,10 +110,7 @@ impl TrajectoryTable {
         document: &Document,
     ) -> Result<(Reorientation, Boxes), InputError> {
         let terms = *self.terms.get_ref();
-        if !(1..=MOST_TERMS).contains(&terms) {
-            let message = format!("found {terms}, expected 1 to {MOST_TERMS} terms");
-            return Err(document.error_at(self.terms.span(), message, None));
-        }
+        check_terms(terms, self.terms.span(), document)?;
         let accuracy = Accuracy {
             attitude_steps: self.attitude_steps.get(),
             peak_intervals: self.peak_intervals.get(),
@@ -156,8 +151,26 @@ impl BoxTable {
                 return Err(document.error_at(widths.span(), message, None));
             }
         };
+        let mut all = coefficient.iter().chain(&duration).chain(&alpha);
+        if !all.all(|bound| bound.is_finite()) {
+            let message = "the box is too wide: durations or powers of time are infinite in it";
+            return Err(document.error_at(self.coefficient.span(), message, None));
+        }
         Ok(Boxes { coefficient, duration, alpha })
     }
+}
+
+/// Whether a family can have so many terms.
+pub(super) fn check_terms(
+    terms: usize,
+    span: Range<usize>,
+    document: &Document,
+) -> Result<(), InputError> {
+    if (1..=MOST_TERMS).contains(&terms) {
+        return Ok(());
+    }
+    let message = format!("found {terms}, expected 1 to {MOST_TERMS} terms");
+    Err(document.error_at(span, message, None))
 }
 
 /// From a quarter to one and a half times the shortest duration of a typical shape: every joint's

@@ -1,5 +1,6 @@
 //! The `[task]` table.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use nalgebra::UnitQuaternion;
@@ -7,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::{Posture, Task};
-use crate::input::{Document, InputError, PerJoint, finite_array, finite_list, fraction, nearest};
+use crate::input::{Document, Finite, InputError, PerJoint, finite_array, fraction, nearest};
 use crate::robot::Robot;
 use crate::trajectory::Limits;
 
@@ -25,13 +26,10 @@ pub struct TaskTable {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct PostureTable {
-    joints_deg: Spanned<Angles>,
+    joints_deg: Spanned<Vec<Finite>>,
     #[serde(deserialize_with = "finite_array")]
     base_zyx_deg: [f64; 3],
 }
-
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Angles(#[serde(deserialize_with = "finite_list")] Vec<f64>);
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
@@ -49,6 +47,18 @@ struct WeightsTable {
 }
 
 impl TaskTable {
+    /// The robot's file, unless it comes with the program.
+    pub fn robot_file(&self, document: &Document) -> Option<PathBuf> {
+        let name = self.robot.get_ref();
+        Robot::embedded(name).is_none().then(|| document.resolve(name))
+    }
+
+    /// The same task with its robot in another place.
+    #[must_use]
+    pub fn with_robot(self, robot: &str) -> Self {
+        Self { robot: Spanned::new(self.robot.span(), robot.to_owned()), ..self }
+    }
+
     /// The task. A robot that does not come with the program is a file, sought beside `document`.
     pub fn build(&self, document: &Document) -> Result<Task, InputError> {
         let robot = find_robot(&self.robot, document)?;
@@ -94,9 +104,9 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn posture(&self, table: &PostureTable) -> Result<Posture, InputError> {
-        let angles = &table.joints_deg.get_ref().0;
+        let angles = table.joints_deg.get_ref();
         self.check_length(&table.joints_deg, angles.len())?;
-        for (joint, angle) in self.robot.joints.iter().zip(angles) {
+        for (joint, Finite(angle)) in self.robot.joints.iter().zip(angles) {
             let [lower, upper] = joint.range.map(f64::to_degrees);
             // A hair's breadth for the rounding of degrees to radians and back.
             if !(lower - 1e-9..=upper + 1e-9).contains(angle) {
@@ -107,7 +117,7 @@ impl Reader<'_> {
         }
         let [yaw, pitch, roll] = table.base_zyx_deg.map(f64::to_radians);
         Ok(Posture {
-            joints: angles.iter().map(|a| a.to_radians()).collect(),
+            joints: angles.iter().map(|a| a.0.to_radians()).collect(),
             base: UnitQuaternion::from_euler_angles(roll, pitch, yaw),
         })
     }
@@ -130,6 +140,9 @@ impl Reader<'_> {
             "found {found} values, expected {expected}, one for each joint of robot `{}`",
             self.robot.name
         );
-        Err(self.document.error_at(list.span(), message, None))
+        let help = list.span().is_empty().then(|| {
+            "the file leaves this to the paper's task, which is for another robot".to_owned()
+        });
+        Err(self.document.error_at(list.span(), message, help))
     }
 }

@@ -16,7 +16,13 @@ pub struct Family {
 
 impl Family {
     /// From the joints' ranges and both configurations \[rad\], each start and goal in its range.
+    ///
+    /// # Panics
+    ///
+    /// Panics when the three lists differ in length, or without a term.
     pub fn new(ranges: &[[f64; 2]], start: &[f64], goal: &[f64], terms: usize) -> Self {
+        assert!(ranges.len() == start.len() && start.len() == goal.len(), "one of each a joint");
+        assert!(terms > 0, "at least one term");
         let spans = ranges
             .iter()
             .zip(start.iter().zip(goal))
@@ -41,8 +47,12 @@ impl Family {
     }
 
     /// The path with these coefficients.
+    ///
+    /// # Panics
+    ///
+    /// Panics when there are more or fewer coefficients than the family's dimension.
     pub fn path<T: Scalar>(&self, coefficients: &[T]) -> Path<'_, T> {
-        debug_assert_eq!(coefficients.len(), self.dimension());
+        assert_eq!(coefficients.len(), self.dimension(), "terms × joints coefficients");
         let terms = self.terms();
         let mut free = vec![T::zero(); self.dimension()];
         for (row, c) in free.chunks_exact_mut(terms).zip(coefficients.chunks_exact(terms)) {

@@ -129,7 +129,7 @@ fn refine(
         best = best.or(Peak { value: sample[order].abs(), tau: middle });
         let slope = sample[order + 1];
         // What is still to gain is below slope × width.
-        if slope.abs() * (b - a) <= 1e-12 * best.value {
+        if slope.abs() * (b - a).abs() <= 1e-12 * best.value {
             break;
         }
         if slope * slope_b < 0.0 {

@@ -39,6 +39,8 @@ fn tasks() {
         ("unknown_robot", "[task]\nrobot = 'xiao2032'\n"),
         ("no_terms", "[trajectory]\nterms = 0\n"),
         ("too_many_terms", "[trajectory]\nterms = 17\n"),
+        ("steps_without_end", "[trajectory]\nattitude_steps = 1_000_000_000_000\n"),
+        ("box_without_end", "[trajectory.box]\ncoefficient = [1e308]\n"),
         ("no_steps", "[trajectory]\nattitude_steps = 0\n"),
         ("box_reversed", "[trajectory.box]\nduration = [9, 3]\n"),
         ("box_from_zero", "[trajectory.box]\nduration = [0, 3]\n"),
@@ -71,6 +73,19 @@ fn robots() {
     ] {
         rejects(&format!("robot_{name}"), &["check", "robot.toml"], "robot.toml", text);
     }
+}
+
+/// A robot that the paper's task does not fit.
+#[test]
+fn robot_without_a_task_of_its_own() {
+    let three = robot("[[joint]]", "[[joint]]");
+    let three: Vec<&str> = three.split("[[joint]]").take(4).collect();
+    let folder = Folder::new()
+        .with("arm.toml", three.join("[[joint]]"))
+        .with("task.toml", "[task]\nrobot = 'arm.toml'\n");
+    let output = folder.run(&["plan", "task.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    insta::assert_snapshot!("robot_without_a_task_of_its_own", stderr(&output));
 }
 
 /// A robot's mistake is shown in the robot's file, also when a task names it.
@@ -107,6 +122,12 @@ fn experiments() {
         ("sweep_unknown", format!("name = 'x'\n[sweep]\njerk = [20]{FIELD}")),
         ("sweep_weight", format!("name = 'x'\n[sweep]\nweight_base = [0.1, 1.1]{FIELD}")),
         ("sweep_terms", format!("name = 'x'\n[sweep]\nterms = [2, 99]{FIELD}")),
+        ("optimiser_twice", format!("name = 'x'{FIELD}{FIELD}")),
+        ("sweep_repeats", format!("name = 'x'\n[sweep]\nweight_base = [0.5, 0.5]{FIELD}")),
+        (
+            "population_huge",
+            "name = 'x'\n[[optimiser]]\npso = { population = 1_000_000_000_000 }\n".to_owned(),
+        ),
         ("target_not_a_number", format!("name = 'x'\ntargets = [nan]{FIELD}")),
     ] {
         rejects(

@@ -78,6 +78,45 @@ fn stored_runs_are_not_done_again() {
     assert!(first.iter().all(|(name, bytes)| fresh[name] != *bytes));
 }
 
+/// An edited experiment finds its stored runs under their new names, and leaves out what it no longer
+/// has.
+#[test]
+fn edited_experiments_keep_what_still_fits() {
+    let field = |settings: &[&str]| {
+        let tables = settings.iter().map(|s| format!("[[optimiser]]\npso = {{ {s} }}\n"));
+        let head = "name = 'edited'\nseeds = 2\nbudget = { evaluations = 100 }\n";
+        head.to_owned() + &tables.collect::<String>()
+    };
+    let (a, b, c) = ("population = 10", "population = 11", "population = 12");
+    let folder = Folder::new().with("edited.toml", field(&[a, b]));
+    run(&folder, &["edited.toml"]);
+    let folder = folder.with("edited.toml", field(&[b, c]));
+    let output = folder.run(&["run", "edited.toml"]);
+    assert!(stderr(&output).contains("2 of 4 runs are stored already"), "{}", stderr(&output));
+    let summary = stdout(&output);
+    for label in ["pso/time-free ", "pso/time-free#2 "] {
+        let line = summary.lines().find(|l| l.contains(label)).unwrap();
+        assert!(line.split_whitespace().nth(1) == Some("2"), "{line}");
+    }
+}
+
+/// What a run determines stands in its row, and its inputs beside it run again.
+#[test]
+fn results_say_how_to_get_them_again() {
+    let robot = include_str!("../../src/robot/xiao2023.toml").replace("mass = 600", "mass = 700");
+    let text = SMALL.replace("[sweep]", "[task]\nrobot = 'arm.toml'\n[sweep]");
+    let folder = Folder::new().with("small.toml", text).with("arm.toml", robot);
+    run(&folder, &["small.toml", "--out", "out"]);
+    let recipe = table(&folder.path().join("out/runs"))[0].column("recipe").unwrap().clone();
+    let recipe: serde_json::Value =
+        serde_json::from_str(recipe.str().unwrap().get(0).unwrap()).unwrap();
+    assert_eq!(recipe["task"]["robot"]["base"]["mass"], 700.0);
+    std::fs::remove_file(folder.path().join("arm.toml")).unwrap();
+    run(&folder, &["out/experiment.toml", "--out", "again"]);
+    let traces = |out: &str| files(&folder.path().join(out).join("traces"));
+    assert_eq!(traces("out"), traces("again"));
+}
+
 #[test]
 fn figures_come_in_three_formats_with_text_that_is_there() {
     let folder = Folder::new().with("small.toml", SMALL);
@@ -99,6 +138,8 @@ fn shipped_experiments_are_valid() {
     for (name, bytes) in files(Path::new("experiments")) {
         let output = Folder::new().with(&name, bytes).run(&["check", &name]);
         assert!(output.status.success(), "{name}: {}", stderr(&output));
+        let again = Folder::new().with("again.toml", stdout(&output)).run(&["check", "again.toml"]);
+        assert_eq!(stdout(&again), stdout(&output));
     }
 }
 
