@@ -16,11 +16,24 @@ pub struct FileError {
     pub source: io::Error,
 }
 
+/// Whether [`write_file`] can write there: the folder takes new files, and no folder has the name.
+pub fn check_writable(path: &Path) -> Result<(), FileError> {
+    let error = |source| FileError { action: "write", path: path.to_owned(), source };
+    if path.is_dir() {
+        return Err(error(io::ErrorKind::IsADirectory.into()));
+    }
+    fs::metadata(folder_of(path)).map_err(error)?;
+    readable_by_all().tempfile_in(folder_of(path)).map(drop).map_err(error)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Writes to a temporary file in the same folder, flushes it to the disk and renames it.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let error = |source| FileError { action: "write", path: path.to_owned(), source };
-    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = readable_by_all().tempfile_in(folder).map_err(error)?;
+    let mut file = readable_by_all().tempfile_in(folder_of(path)).map_err(error)?;
     file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(error)?;
     file.persist(path).map_err(|e| error(e.error))?;
     Ok(())

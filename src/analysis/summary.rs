@@ -36,13 +36,13 @@ pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
         "runs" => counts(&|g| g.len() as u64),
         "failed" => counts(&|g| g.iter().filter(|run| run.cost.is_infinite()).count() as u64),
         "best J" => reals(&|g| quantile_of(g, |run| run.cost, 0.0)),
-        "lower quartile" => reals(&|g| quantile_of(g, |run| run.cost, 0.25)),
-        "median J" => reals(&|g| quantile_of(g, |run| run.cost, 0.5)),
-        "upper quartile" => reals(&|g| quantile_of(g, |run| run.cost, 0.75)),
+        "quartile 1" => reals(&|g| quantile_of(g, |run| run.cost, 0.25)),
+        "median" => reals(&|g| quantile_of(g, |run| run.cost, 0.5)),
+        "quartile 3" => reals(&|g| quantile_of(g, |run| run.cost, 0.75)),
         "residual [°]" => reals(&|g| best(g, |run| run.residual_deg)),
         "t_f [s]" => reals(&|g| best(g, |run| run.duration)),
-        "evaluations in all" => counts(&|g| g.iter().map(|run| run.evaluations).sum()),
-        "median seconds" => reals(&|g| quantile_of(g, |run| run.seconds, 0.5)),
+        "evaluations" => counts(&|g| g.iter().map(|run| run.evaluations).sum()),
+        "s/run" => reals(&|g| quantile_of(g, |run| run.seconds, 0.5)),
     )?;
     for target in &plan.targets {
         let reached = |g: &Vec<&Run>| {

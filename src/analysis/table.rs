@@ -1,6 +1,6 @@
 //! A table as text.
 
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
 use polars::prelude::*;
 
 /// Draws a table for a terminal; numbers to five significant digits.
@@ -10,7 +10,9 @@ pub fn render(frame: &DataFrame) -> PolarsResult<String> {
     let shown: Vec<&Column> = frame.columns().iter().filter(|column| !is_blank(column)).collect();
     let mut table = Table::new();
     table
-        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
+        .load_preset(presets::NOTHING)
+        .set_style(TableComponent::HeaderLines, '─')
+        .set_style(TableComponent::MiddleHeaderIntersections, '─')
         .set_content_arrangement(ContentArrangement::Disabled)
         .set_header(shown.iter().map(|column| column.name().as_str()));
     for i in 0..frame.height() {

@@ -77,7 +77,7 @@ fn check_experiment(document: &Document) -> Result<(), CliError> {
     warn_of(&plan.instances[0].problem.task().robot);
     print_resolved("experiment", &file)?;
     let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
-    println!(
+    say!(
         "\n# {} runs: {instances} instances × {optimisers} optimisers × {} seeds",
         plan.runs.len(),
         file.seeds
@@ -92,7 +92,7 @@ fn check_experiment(_: &Document) -> Result<(), CliError> {
 }
 
 fn print_resolved(kind: &str, file: &impl Serialize) -> Result<(), CliError> {
-    println!("# {kind}, with every default filled in");
-    print!("{}", toml::to_string(file)?);
+    say!("# {kind}, with every default filled in");
+    say!("{}", toml::to_string(file)?.trim_end());
     Ok(())
 }

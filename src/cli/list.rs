@@ -14,24 +14,20 @@ pub(super) struct List {}
 impl List {
     #[expect(clippy::unused_self, reason = "every verb is a value that executes")]
     pub(super) fn execute(self) -> Result<(), CliError> {
-        println!("optimisers, with their settings and defaults");
+        say!("optimisers, with their settings and defaults");
         for settings in Settings::all() {
-            println!("\n  {}", settings.name());
+            say!("\n  {}", settings.name());
             for setting in settings.describe() {
-                println!("    {} = {}", setting.name, setting.default);
-                println!("        {}", setting.meaning);
+                say!("    {} = {}", setting.name, setting.default);
+                say!("        {}", setting.meaning);
             }
         }
         problems()?;
-        println!("\nrobots that come with the program");
+        say!("\nrobots that come with the program");
         for name in Robot::embedded_names() {
             if let Some(document) = Robot::embedded(name) {
                 let robot = Robot::from_document(&document)?;
-                println!(
-                    "\n  {name}: {} joints, {:.1} kg",
-                    robot.joint_count(),
-                    robot.total_mass()
-                );
+                say!("\n  {name}: {} joints, {:.1} kg", robot.joint_count(), robot.total_mass());
             }
         }
         Ok(())
@@ -43,12 +39,12 @@ fn problems() -> Result<(), CliError> {
     let document = TaskFile::paper();
     let (problem, boxes) = TaskFile::read(&document)?.build(&document)?;
     let problem = std::sync::Arc::new(problem);
-    println!("\nproblems: the reorientation task in these formulations");
-    println!("(dimensions and boxes are those of the paper's task)");
+    say!("\nproblems: the reorientation task in these formulations");
+    say!("(dimensions and boxes are those of the paper's task)");
     for formulation in Formulation::ALL {
         let formulated = Formulated::new(formulation, problem.clone(), &boxes);
-        println!("\n  {}: {} variables", formulation.name(), formulated.bounds().len());
-        println!("    {}", variables(formulation, &boxes));
+        say!("\n  {}: {} variables", formulation.name(), formulated.bounds().len());
+        say!("    {}", variables(formulation, &boxes));
     }
     Ok(())
 }

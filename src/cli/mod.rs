@@ -1,5 +1,12 @@
 //! The command line, one file a verb.
 
+/// Prints a line to standard output; unlike `println!` it fails with an error, not a panic.
+macro_rules! say {
+    ($($argument:tt)*) => {
+        $crate::cli::say(format_args!($($argument)*))?
+    };
+}
+
 mod check;
 mod list;
 mod motion;
@@ -9,6 +16,8 @@ mod replay;
 #[cfg(feature = "harness")]
 mod run;
 
+use std::fmt;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, LazyLock};
@@ -20,6 +29,7 @@ use thiserror::Error;
 use crate::export::ExportError;
 use crate::input::{Document, InputError};
 use crate::oracle::Watch;
+use crate::output::FileError;
 use crate::robot::Robot;
 
 /// Plan and benchmark the motion of free-floating space robots.
@@ -67,7 +77,8 @@ enum CliError {
     #[error("interrupted: {0}")]
     Interrupted(String),
     /// No motion came of it.
-    #[error("no motion found: every evaluation gave a cost that is not a number")]
+    #[error("no motion found: no evaluation gave a finite cost")]
+    #[diagnostic(help("are all limits, lengths, masses and boxes of a sensible size?"))]
     NoMotion,
     /// A motion could not be written.
     #[error(transparent)]
@@ -93,7 +104,7 @@ enum CliError {
     Resolved(#[from] toml::ser::Error),
     /// A file could not be written.
     #[error(transparent)]
-    File(#[from] crate::output::FileError),
+    File(#[from] FileError),
 }
 
 impl CliError {
@@ -128,6 +139,17 @@ pub fn main() -> ExitCode {
             eprintln!("{:?}", Report::new(error));
             code
         }
+    }
+}
+
+/// Prints a line to standard output. A reader who has seen enough and left is no error.
+fn say(line: fmt::Arguments<'_>) -> Result<(), CliError> {
+    match writeln!(io::stdout(), "{line}") {
+        Err(source) if source.kind() != io::ErrorKind::BrokenPipe => {
+            let path = PathBuf::from("standard output");
+            Err(FileError { action: "write to", path, source }.into())
+        }
+        _ => Ok(()),
     }
 }
 

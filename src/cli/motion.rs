@@ -8,6 +8,9 @@ use serde::Serialize;
 
 use super::CliError;
 use crate::export::{self, MotionFormat, write_motion};
+use crate::output::check_writable;
+#[cfg(feature = "harness")]
+use crate::output::create_folder;
 use crate::problem::{Assessment, Motion, Reorientation};
 use crate::trajectory::Family;
 
@@ -24,9 +27,16 @@ pub(super) struct MotionFiles {
 }
 
 impl MotionFiles {
-    /// Finds fault with the file's name before any work is done.
+    /// Finds fault with the files' names and folders before any work is done.
     pub(super) fn check(&self) -> Result<(), CliError> {
-        self.format().map(drop)
+        if let Some((path, _)) = self.format()? {
+            check_writable(path)?;
+        }
+        #[cfg(feature = "harness")]
+        if let Some(folder) = &self.figures {
+            create_folder(folder)?;
+        }
+        Ok(())
     }
 
     fn format(&self) -> Result<Option<(&Path, MotionFormat)>, CliError> {
@@ -149,7 +159,7 @@ impl fmt::Display for Told<'_> {
         };
         if let Some((joint, peaks)) = largest(2) {
             let (jerk, time) = (peaks[2].value.to_degrees(), peaks[2].tau * assessment.duration);
-            writeln!(f, "  largest jerk   {jerk:.4} °/s³ on {} at {time:.4} s", joint.name)?;
+            write!(f, "  largest jerk   {jerk:.4} °/s³ on {} at {time:.4} s", joint.name)?;
         }
         Ok(())
     }

@@ -75,18 +75,18 @@ impl Plan {
             Formulated::new(settings.formulation(), Arc::new(problem), &boxes),
         )?;
         if self.json {
-            println!("{}", self.json(&found));
+            say!("{}", self.json(&found));
         } else {
             let problem = found.problem.task();
             let told = Told { problem, assessment: &found.assessment };
-            println!(
+            say!(
                 "{} by {}, seed {}",
                 shown(self.file.as_ref(), "the paper's task"),
                 self.optimiser,
                 self.seed
             );
-            print!("{told}");
-            println!("  {} evaluations in {:.2} s", found.evaluations, found.seconds);
+            say!("{told}");
+            say!("  {} evaluations in {:.2} s", found.evaluations, found.seconds);
         }
         self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
         if found.interrupted {

@@ -1,19 +1,23 @@
-//! A bar on a terminal, nothing elsewhere; verbs print plain lines of their own there.
+//! A bar on a terminal, plain lines elsewhere.
 
 use std::io::IsTerminal as _;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, spawn};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::oracle::Watch;
 
+/// Time between plain lines.
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
+
 /// Shows how many evaluations of all are done, until dropped.
 pub(super) struct Bar {
     display: ProgressBar,
     done: Arc<AtomicBool>,
+    on_terminal: bool,
     painter: Option<JoinHandle<()>>,
 }
 
@@ -26,21 +30,27 @@ impl Bar {
             bar.set_style(style);
         }
         let done = Arc::new(AtomicBool::new(false));
-        let painter = std::io::stderr().is_terminal().then(|| {
+        let on_terminal = std::io::stderr().is_terminal();
+        let painter = {
             let (bar, done) = (bar.clone(), done.clone());
             spawn(move || {
+                let mut said = Instant::now();
                 while !done.load(Ordering::Relaxed) {
                     bar.set_position(watch.evaluations());
+                    if !on_terminal && said.elapsed() >= BETWEEN_LINES {
+                        said = Instant::now();
+                        eprintln!("{} of {evaluations} evaluations", watch.evaluations());
+                    }
                     std::thread::sleep(Duration::from_millis(100));
                 }
             })
-        });
-        Self { display: bar, done, painter }
+        };
+        Self { display: bar, done, on_terminal, painter: Some(painter) }
     }
 
     /// Shows a line: above the bar on a terminal, by itself elsewhere.
     pub(super) fn line(&self, line: &str) {
-        if self.painter.is_some() {
+        if self.on_terminal {
             self.display.println(line);
         } else {
             eprintln!("{line}");

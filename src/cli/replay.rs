@@ -50,19 +50,16 @@ impl Replay {
         let published = ReplayFile::read(&document)?.build(&document)?;
         warn_of(&published.problem.task().robot);
         if self.json {
-            println!("{}", json(&published));
+            say!("{}", json(&published));
         } else {
-            println!(
-                "{}",
-                shown(self.file.as_ref(), "the solution published by Xiao et al. (2023)")
-            );
+            say!("{}", shown(self.file.as_ref(), "the solution published by Xiao et al. (2023)"));
             if let Some(claim) = published.cost {
-                println!("claimed: J {claim}, duration {} s", published.duration);
+                say!("claimed: J {claim}, duration {} s", published.duration);
             }
             for reading in Reading::ALL {
                 let assessment = published.assess(reading);
-                println!("read {}:", reading.meaning());
-                print!("{}", Told { problem: &published.problem, assessment: &assessment });
+                say!("read {}:", reading.meaning());
+                say!("{}", Told { problem: &published.problem, assessment: &assessment });
             }
         }
         self.files.write(&published.problem, &published.coefficients, published.duration)

@@ -25,14 +25,14 @@ pub(super) struct Run {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Number of seeds, instead of the file's
-    #[arg(long, value_name = "N")]
-    seeds: Option<NonZeroU64>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    seeds: Option<u64>,
     /// Evaluations a run, instead of the file's
-    #[arg(long, value_name = "N")]
-    budget: Option<NonZeroU64>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
+    budget: Option<u64>,
     /// Runs at a time [default: one a processor]
-    #[arg(long, value_name = "N")]
-    jobs: Option<NonZeroUsize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
     /// Only a disjoint part of the runs, such as 0/4
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
@@ -52,12 +52,14 @@ impl Progress for Lines<'_> {
         let optimiser = &self.plan.optimisers[run.optimiser].label;
         let instance = &self.plan.instances[run.instance].label;
         let space = if instance.is_empty() { "" } else { " " };
-        self.bar.line(&format!(
-            "{optimiser}{space}{instance} seed {}: J {:.6}, {}",
-            run.seed,
-            record.cost,
-            record.status.name()
-        ));
+        let found = if record.cost.is_finite() {
+            format!("J {:.6}", record.cost)
+        } else {
+            "no motion".to_owned()
+        };
+        let status = record.status.name();
+        self.bar
+            .line(&format!("{optimiser}{space}{instance} seed {}: {found}, {status}", run.seed));
     }
 }
 
@@ -65,8 +67,9 @@ impl Run {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let document = read_or(self.file.as_deref(), ExperimentFile::embedded)?;
         let mut file = ExperimentFile::read(&document)?;
-        file.seeds = self.seeds.unwrap_or(file.seeds);
-        file.budget.evaluations = self.budget.unwrap_or(file.budget.evaluations);
+        file.seeds = self.seeds.and_then(NonZeroU64::new).unwrap_or(file.seeds);
+        let budget = self.budget.and_then(NonZeroU64::new);
+        file.budget.evaluations = budget.unwrap_or(file.budget.evaluations);
         let plan = Plan::new(&file, &document)?;
         warn_of(&plan.instances[0].problem.task().robot);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
@@ -89,7 +92,7 @@ impl Run {
         if count < mine.len() {
             eprintln!("{} of {} runs are stored already", mine.len() - count, mine.len());
         }
-        let jobs = self.jobs.map_or_else(default_jobs, NonZeroUsize::get);
+        let jobs = self.jobs.map_or_else(default_jobs, usize::from);
         {
             let bar = Bar::new(evaluations, watch.clone());
             experiment::run(plan, &mine, store, jobs, &watch, &Lines { bar: &bar, plan })?;
@@ -117,7 +120,15 @@ fn keep_inputs(
         write_file(&folder.join("robot.toml"), toml::to_string(&robot)?.as_bytes())?;
         file.task = file.task.with_robot("robot.toml");
     }
-    Ok(write_file(&folder.join("experiment.toml"), toml::to_string(&file)?.as_bytes())?)
+    let (path, text) = (folder.join("experiment.toml"), toml::to_string(&file)?);
+    if std::fs::read_to_string(&path).is_ok_and(|before| before != text) {
+        eprintln!(
+            "note: {} holds runs of another version of this experiment; they stay there, and those \
+             that no longer belong are left out of the summary",
+            folder.display()
+        );
+    }
+    Ok(write_file(&path, text.as_bytes())?)
 }
 
 /// Prints the summary of all stored runs of the plan and draws them.
@@ -125,9 +136,9 @@ fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
     let keys = || plan.runs.iter().map(|run| run.key.as_str());
     let runs = analysis::runs(plan, &store.read("runs", keys())?)?;
     if runs.len() < plan.runs.len() {
-        println!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
+        say!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
     }
-    println!("{}", render(&summary(plan, &runs)?)?);
+    say!("{}", render(&summary(plan, &runs)?)?);
     let figures = folder.join("figures");
     let curves = convergence(plan, &runs, &store.read("traces", keys())?)?;
     plot::convergence(&curves).save(&figures, "convergence")?;
@@ -135,16 +146,20 @@ fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
         let instance = &plan.instances[best.instance];
         let optimiser = &plan.optimisers[best.optimiser].label;
         let on = if instance.label.is_empty() { "" } else { " on " };
-        println!(
+        say!(
             "best motion: {optimiser}{on}{}, seed {}: J {:.6}, t_f {:.4} s",
-            instance.label, best.seed, best.cost, best.duration
+            instance.label,
+            best.seed,
+            best.cost,
+            best.duration
         );
         let problem = &instance.problem;
         let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
         plot::write_motion_figures(&figures, &motion, problem.task())?;
     }
-    println!("results: {}, figures: {}", folder.display(), figures.display());
-    Ok(())
+    say!("results: {}, figures: {}", folder.display(), figures.display());
+    let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
+    if failed > 0 && failed == runs.len() { Err(CliError::NoMotion) } else { Ok(()) }
 }
 
 fn default_jobs() -> usize {

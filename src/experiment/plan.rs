@@ -46,7 +46,7 @@ pub struct Instance {
 /// One optimiser of the field.
 #[derive(Debug, Clone)]
 pub struct Entrant {
-    /// Optimiser and formulation, numbered where the field has both more than once.
+    /// Optimiser and formulation, with changed settings where the field has both more than once.
     pub label: String,
     /// The settings.
     pub settings: Settings,
@@ -132,15 +132,20 @@ impl Plan {
     }
 }
 
+/// Labels the field: optimiser and formulation, with the settings that differ from the default where
+/// the field has both more than once.
 fn entrants(field: &[Settings]) -> Vec<Entrant> {
-    let mut met = HashMap::new();
+    let plain = |s: &Settings| format!("{}/{}", s.name(), s.formulation().name());
+    let mut count = HashMap::new();
+    for settings in field {
+        *count.entry(plain(settings)).or_insert(0) += 1;
+    }
     let label = |settings: &Settings| {
-        let plain = format!("{}/{}", settings.name(), settings.formulation().name());
-        let count = met.entry(plain.clone()).and_modify(|c| *c += 1).or_insert(1);
-        if *count == 1 { plain } else { format!("{plain}#{count}") }
+        let plain = plain(settings);
+        let changed = if count[&plain] > 1 { settings.changed() } else { Vec::new() };
+        std::iter::once(plain).chain(changed).collect::<Vec<_>>().join(" ")
     };
-    let labels: Vec<String> = field.iter().map(label).collect();
-    labels.into_iter().zip(field).map(|(label, s)| Entrant { label, settings: s.clone() }).collect()
+    field.iter().map(|s| Entrant { label: label(s), settings: s.clone() }).collect()
 }
 
 /// The cross product of the sweep's lists.

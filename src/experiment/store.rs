@@ -31,7 +31,7 @@ pub enum StoreError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The table could not be written or read.
-    #[error("cannot {action} table {}", .path.display())]
+    #[error("cannot {action} table {}; a run whose files are removed is done again", .path.display())]
     Table {
         /// What was tried.
         action: &'static str,

@@ -35,6 +35,11 @@ struct Point {
 
 /// The motion as YAML; the message has no place for jerks and for the base.
 pub(super) fn motion(motion: &Motion) -> Result<Vec<u8>, ExportError> {
+    // The message counts seconds in 32 bits with a sign.
+    if motion.time.iter().any(|&time| !(0.0..=f64::from(i32::MAX)).contains(&time)) {
+        let reason = "the motion is too long for the message's clock".to_owned();
+        return Err(ExportError::Format { format: "YAML", reason });
+    }
     let points = motion.time.iter().enumerate().map(|(i, &time)| {
         let all = |order: usize| motion.joints.iter().map(|j| j.derivatives[i][order]).collect();
         Point {

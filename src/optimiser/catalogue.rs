@@ -62,6 +62,21 @@ impl Settings {
         }
     }
 
+    /// The settings that differ from the default, as `name=value`; the formulation is left out.
+    pub fn changed(&self) -> Vec<String> {
+        let values = |settings: &Self| serde_json::to_value(settings).unwrap_or_default();
+        let (own, default) = (values(self), Self::by_name(self.name()).as_ref().map(values));
+        let own = own.get(self.name()).and_then(|table| table.as_object()).cloned();
+        let default = default.as_ref().and_then(|d| d.get(self.name()));
+        own.into_iter()
+            .flatten()
+            .filter(|(name, value)| {
+                name != "formulation" && default.and_then(|d| d.get(name)) != Some(value)
+            })
+            .map(|(name, value)| format!("{name}={}", toml_value(&value)))
+            .collect()
+    }
+
     /// Every setting with its default and its meaning, from the documentation of its field.
     pub fn describe(&self) -> Vec<Setting> {
         let schema = match self {

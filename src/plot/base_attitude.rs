@@ -13,12 +13,12 @@ pub fn base_attitude(motion: &Motion, task: &Task) -> Figure {
     let (roll, pitch, yaw) = task.goal.base.euler_angles();
     let mut goals = [yaw, pitch, roll].map(f64::to_degrees).to_vec();
     goals.dedup();
-    let goal = |angle: f64| Line {
-        name: String::new(),
-        stroke: Stroke::reference(),
-        points: vec![[0.0, angle], [end, angle]],
-    };
-    let mut lines: Vec<Line> = goals.into_iter().map(goal).collect();
+    let mut lines: Vec<Line> = Vec::new();
+    for angle in goals {
+        let name = if lines.is_empty() { "goal" } else { "" }.to_owned();
+        let points = vec![[0.0, angle], [end, angle]];
+        lines.push(Line { name, stroke: Stroke::reference(), points });
+    }
     let angles = motion.base_zyx();
     for (k, name) in ["yaw ψ", "pitch ϑ", "roll φ"].into_iter().enumerate() {
         let values = angles.iter().map(|zyx| zyx[k].to_degrees());

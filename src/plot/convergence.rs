@@ -11,7 +11,11 @@ pub fn convergence(curves: &[Curve]) -> Figure {
     let many = curves.iter().any(|curve| curve.instance != curves[0].instance);
     let mut panel = Panel {
         x: Axis::logarithmic("evaluations", extent(curves, |c| c.evaluations.clone()), 0.0),
-        y: Axis::logarithmic("best J", extent(curves, |c| c.quartiles.concat()), MARGIN),
+        y: Axis::logarithmic(
+            "best J, median and quartiles",
+            extent(curves, |c| c.quartiles.concat()),
+            MARGIN,
+        ),
         bands: Vec::new(),
         lines: Vec::new(),
     };

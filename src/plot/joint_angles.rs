@@ -16,7 +16,8 @@ pub(super) fn joint_panel(motion: &Motion, order: usize, label: &str, limits: &[
     let end = motion.time.last().copied().unwrap_or(1.0);
     for limit in limits.iter().flat_map(|limit| [-limit, *limit]) {
         let points = vec![[0.0, limit], [end, limit]];
-        lines.push(Line { name: String::new(), stroke: Stroke::reference(), points });
+        let name = if lines.is_empty() { "limit" } else { "" }.to_owned();
+        lines.push(Line { name, stroke: Stroke::reference(), points });
     }
     for (i, joint) in motion.joints.iter().enumerate() {
         let values = joint.derivatives.iter().map(|d| d[order].to_degrees());

@@ -128,9 +128,9 @@ impl Ranged for Axis {
     }
 }
 
-/// A step of 1, 2 or 5 times a power of ten that makes up to eight intervals.
+/// A step of 1, 2 or 5 times a power of ten that makes up to nine intervals.
 fn tick_step(width: f64) -> f64 {
-    let rough = if width > 0.0 { width / 8.0 } else { 1.0 };
+    let rough = if width > 0.0 { width / 9.0 } else { 1.0 };
     let power = 10_f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= rough).unwrap_or(10.0);
     step * power

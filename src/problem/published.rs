@@ -81,8 +81,12 @@ pub struct Published {
 /// Step of the time grid on which the as-published reading looks at the limits \[s\].
 const SAMPLE_STEP: f64 = 0.01;
 
-/// Longest motion to replay \[s\]: more samples than a million say nothing new.
-const LONGEST: f64 = 10_000.0;
+/// Shortest and longest motion to replay \[s\].
+const SHORTEST: f64 = 1e-3;
+const LONGEST: f64 = 1e9;
+
+/// Most samples of the as-published reading; a motion that would need more is looked at less often.
+const MOST_SAMPLES: f64 = 1e6;
 
 /// Runge–Kutta steps of the as-published reading.
 const RUNGE_KUTTA_STEPS: usize = 2000;
@@ -103,8 +107,8 @@ impl ReplayFile {
         let task = Arc::new(self.task.build(document)?);
         let motion = self.motion.get_ref();
         let duration = motion.t_f.get_ref().0;
-        if duration > LONGEST {
-            let message = format!("found {duration} s, expected at most {LONGEST} s");
+        if !(SHORTEST..=LONGEST).contains(&duration) {
+            let message = format!("found {duration} s, expected {SHORTEST} to {LONGEST} s");
             return Err(document.error_at(motion.t_f.span(), message, None));
         }
         let shape = self.shape(task.robot.joint_count(), document)?;
@@ -119,7 +123,7 @@ impl ReplayFile {
             Shape::Coefficients(rows) => rows.iter().flatten().map(|c| c.0).collect(),
         };
         let cost = motion.j.map(|claim| claim.0);
-        Ok(Published { coefficients, problem, duration, cost })
+        Ok(Published { problem, coefficients, duration, cost })
     }
 
     /// The shape as given, with as many values as the robot has joints.
@@ -231,10 +235,11 @@ fn transposed_attitude(
 
 /// The largest values on a grid from zero that stops short of the end \[rad/s, rad/s², rad/s³\].
 fn sampled_peaks(path: &Path<'_, f64>, duration: f64) -> Peaks {
-    let last = (duration / SAMPLE_STEP + 1e-9).floor() as usize;
+    let step = SAMPLE_STEP.max(duration / MOST_SAMPLES);
+    let last = (duration / step + 1e-9).floor() as usize;
     let peaks = path.joints().map(|joint| {
         (0..=last).fold([Peak::default(); 3], |peak, i| {
-            let tau = i as f64 * SAMPLE_STEP / duration;
+            let tau = i as f64 * step / duration;
             let sample = joint.derivatives(tau);
             std::array::from_fn(|k| peak[k].or(Peak { value: sample[k + 1].abs(), tau }))
         })

@@ -154,7 +154,7 @@ fn motions() {
             "[motion]\nt_f = 6\ncoefficients = [[1], [1], [1, 2], [1], [1], [1]]\n".to_owned(),
         ),
         ("no_time", format!("[motion]\nt_f = 0\nalpha6 = {six}\nalpha7 = {six}\n")),
-        ("too_long", format!("[motion]\nt_f = 1e9\nalpha6 = {six}\nalpha7 = {six}\n")),
+        ("too_long", format!("[motion]\nt_f = 1e10\nalpha6 = {six}\nalpha7 = {six}\n")),
         ("missing", "[task.weights]\nbase = 0.5\n".to_owned()),
     ] {
         rejects(&format!("motion_{name}"), &["replay", "motion.toml"], "motion.toml", text);

@@ -94,10 +94,11 @@ fn edited_experiments_keep_what_still_fits() {
     let output = folder.run(&["run", "edited.toml"]);
     assert!(stderr(&output).contains("2 of 4 runs are stored already"), "{}", stderr(&output));
     let summary = stdout(&output);
-    for label in ["pso/time-free ", "pso/time-free#2 "] {
+    for label in ["pso/time-free population=11 ", "pso/time-free population=12 "] {
         let line = summary.lines().find(|l| l.contains(label)).unwrap();
-        assert!(line.split_whitespace().nth(1) == Some("2"), "{line}");
+        assert!(line.split_whitespace().nth(2) == Some("2"), "{line}");
     }
+    assert!(!summary.contains("population=10"));
 }
 
 /// What a run determines stands in its row, and its inputs beside it run again.
