@@ -14,16 +14,16 @@ pub fn base_attitude(motion: &Motion, task: &Task) -> Figure {
     let mut goals = [yaw, pitch, roll].map(f64::to_degrees).to_vec();
     goals.dedup();
     let mut lines: Vec<Line> = Vec::new();
-    for angle in goals {
-        let name = if lines.is_empty() { "goal" } else { "" }.to_owned();
-        let points = vec![[0.0, angle], [end, angle]];
-        lines.push(Line { name, stroke: Stroke::reference(), points });
-    }
     let angles = motion.base_zyx();
     for (k, name) in ["yaw ψ", "pitch ϑ", "roll φ"].into_iter().enumerate() {
         let values = angles.iter().map(|zyx| zyx[k].to_degrees());
         let points = motion.time.iter().zip(values).map(|(t, v)| [*t, v]).collect();
         lines.push(Line { name: name.to_owned(), stroke: Stroke::of(k), points });
+    }
+    for (i, angle) in goals.into_iter().enumerate() {
+        let name = if i == 0 { "goal" } else { "" }.to_owned();
+        let points = vec![[0.0, angle], [end, angle]];
+        lines.push(Line { name, stroke: Stroke::reference(), points });
     }
     let panel = Panel {
         x: Axis::linear("time t [s]", [0.0, end], 0.0),

@@ -14,15 +14,15 @@ pub fn joint_angles(motion: &Motion) -> Figure {
 pub(super) fn joint_panel(motion: &Motion, order: usize, label: &str, limits: &[f64]) -> Panel {
     let mut lines: Vec<Line> = Vec::new();
     let end = motion.time.last().copied().unwrap_or(1.0);
-    for limit in limits.iter().flat_map(|limit| [-limit, *limit]) {
-        let points = vec![[0.0, limit], [end, limit]];
-        let name = if lines.is_empty() { "limit" } else { "" }.to_owned();
-        lines.push(Line { name, stroke: Stroke::reference(), points });
-    }
     for (i, joint) in motion.joints.iter().enumerate() {
         let values = joint.derivatives.iter().map(|d| d[order].to_degrees());
         let points = motion.time.iter().zip(values).map(|(t, v)| [*t, v]).collect();
         lines.push(Line { name: joint.name.clone(), stroke: Stroke::of(i), points });
+    }
+    for limit in limits.iter().flat_map(|limit| [-limit, *limit]) {
+        let points = vec![[0.0, limit], [end, limit]];
+        let name = if limits.first() == Some(&-limit) { "limit" } else { "" }.to_owned();
+        lines.push(Line { name, stroke: Stroke::reference(), points });
     }
     Panel {
         x: Axis::linear("time t [s]", [0.0, end], 0.0),
