@@ -22,7 +22,7 @@ pub(super) struct Plan {
     #[arg(value_name = "TASK.toml")]
     file: Option<PathBuf>,
     /// Optimiser, with its default settings; `driftless list` shows them
-    #[arg(long, value_name = "NAME", default_value = "pso")]
+    #[arg(long, value_name = "NAME", default_value = "scp")]
     optimiser: String,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -59,6 +59,8 @@ struct Found {
     coefficients: Vec<f64>,
     assessment: Assessment,
     evaluations: u64,
+    linearisations: u64,
+    conic_solves: u64,
     seconds: f64,
     interrupted: bool,
 }
@@ -104,7 +106,6 @@ impl Plan {
             settings.optimiser().minimise(&mut oracle, &mut Rng::new(self.seed))
         };
         let seconds = started.elapsed().as_secs_f64();
-        let evaluations = oracle.evaluations();
         let interrupted = stop == Err(Stop::Interrupted);
         let Some(best) = oracle.best().cloned() else {
             return Err(if interrupted {
@@ -114,7 +115,16 @@ impl Plan {
             });
         };
         let (coefficients, assessment) = problem.certify(&best.x);
-        Ok(Found { problem, coefficients, assessment, evaluations, seconds, interrupted })
+        Ok(Found {
+            coefficients,
+            assessment,
+            evaluations: oracle.evaluations(),
+            linearisations: oracle.linearisations(),
+            conic_solves: oracle.conic_solves(),
+            seconds,
+            interrupted,
+            problem,
+        })
     }
 
     fn json(&self, found: &Found) -> String {
@@ -128,9 +138,8 @@ impl Plan {
             assessment: assessment.into(),
             shape: ShapeJson::new(family, coefficients, assessment.duration),
             evaluations: found.evaluations,
-            // No optimiser of the field uses derivatives or conic subproblems.
-            linearisations: 0,
-            conic_solves: 0,
+            linearisations: found.linearisations,
+            conic_solves: found.conic_solves,
             seconds: found.seconds,
         };
         serde_json::to_string_pretty(&json).unwrap_or_default()

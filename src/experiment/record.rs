@@ -29,6 +29,7 @@ impl Status {
         match outcome {
             Ok(Ok(())) => Some(Self::Finished),
             Ok(Err(Stop::BudgetSpent)) => Some(Self::BudgetSpent),
+            Ok(Err(stop @ Stop::NoDerivatives)) => Some(Self::Panicked(stop.to_string())),
             Ok(Err(Stop::Interrupted)) => None,
             Err(payload) => {
                 let message = payload.downcast_ref::<String>().map(String::as_str);
@@ -147,6 +148,9 @@ fn row(
         "penalty" => [found(Assessment::penalty)],
         "coefficients" => [Series::new("".into(), coefficients)],
         "evaluations" => [oracle.evaluations()],
+        "linearisations" => [oracle.linearisations()],
+        "conic_solves" => [oracle.conic_solves()],
+        "conic_failures" => [oracle.conic_failures()],
         "seconds" => [seconds.as_secs_f64()],
         "seconds_in_problem" => [oracle.time_in_problem().as_secs_f64()],
         "status" => [status.name()],

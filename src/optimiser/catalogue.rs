@@ -3,7 +3,7 @@
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
-use super::{Optimiser, Pso, RandomSearch};
+use super::{Optimiser, Pso, RandomSearch, Scp};
 use crate::problem::Formulation;
 
 /// One optimiser and its settings, as an `[[optimiser]]` table says it.
@@ -14,6 +14,8 @@ pub enum Settings {
     Pso(Pso),
     /// Random search.
     Random(RandomSearch),
+    /// Sequential convex programming from random starts.
+    Scp(Scp),
 }
 
 /// A setting as `list` shows it.
@@ -30,7 +32,11 @@ pub struct Setting {
 impl Settings {
     /// Every optimiser with its default settings.
     pub fn all() -> Vec<Self> {
-        vec![Self::Pso(Pso::default()), Self::Random(RandomSearch::default())]
+        vec![
+            Self::Pso(Pso::default()),
+            Self::Random(RandomSearch::default()),
+            Self::Scp(Scp::default()),
+        ]
     }
 
     /// The optimiser of that name with its default settings.
@@ -43,6 +49,7 @@ impl Settings {
         match self {
             Self::Pso(_) => "pso",
             Self::Random(_) => "random",
+            Self::Scp(_) => "scp",
         }
     }
 
@@ -51,6 +58,8 @@ impl Settings {
         match self {
             Self::Pso(pso) => pso.formulation,
             Self::Random(random) => random.formulation,
+            // The only one with derivatives.
+            Self::Scp(_) => Formulation::TimeFree,
         }
     }
 
@@ -59,6 +68,7 @@ impl Settings {
         match self {
             Self::Pso(pso) => pso,
             Self::Random(random) => random,
+            Self::Scp(scp) => scp,
         }
     }
 
@@ -82,6 +92,7 @@ impl Settings {
         let schema = match self {
             Self::Pso(_) => schema_for!(Pso),
             Self::Random(_) => schema_for!(RandomSearch),
+            Self::Scp(_) => schema_for!(Scp),
         };
         let properties = schema.get("properties").and_then(|p| p.as_object());
         properties

@@ -1,12 +1,15 @@
 //! Optimisers: plain control flow over an [`Oracle`].
 
 mod catalogue;
+mod conic;
 mod pso;
 mod random;
+mod scp;
 
 pub use catalogue::{Setting, Settings};
 pub use pso::{Inertia, Pso, Walls};
 pub use random::RandomSearch;
+pub use scp::{Ending, Scp};
 
 use crate::oracle::{Oracle, Rng, Stop};
 

@@ -5,7 +5,7 @@ mod rng;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::problem::{Bounds, Evaluation, Points, Problem};
+use crate::problem::{Bounds, Evaluation, Linearisation, Points, Problem};
 pub use rng::Rng;
 
 /// Why an optimiser has to stop.
@@ -14,6 +14,9 @@ pub enum Stop {
     /// Every evaluation of the budget is spent.
     #[error("budget spent")]
     BudgetSpent,
+    /// The problem has no derivatives, and the optimiser needs them.
+    #[error("the problem has no derivatives")]
+    NoDerivatives,
     /// The user wants the program to end.
     #[error("interrupted")]
     Interrupted,
@@ -77,6 +80,9 @@ pub struct Oracle<'a> {
     started: Instant,
     in_problem: Duration,
     evaluations: u64,
+    linearisations: u64,
+    conic_solves: u64,
+    conic_failures: u64,
     best: Option<Best>,
     trace: Vec<TracePoint>,
 }
@@ -91,6 +97,9 @@ impl<'a> Oracle<'a> {
             started: Instant::now(),
             in_problem: Duration::ZERO,
             evaluations: 0,
+            linearisations: 0,
+            conic_solves: 0,
+            conic_failures: 0,
             best: None,
             trace: Vec::new(),
         }
@@ -109,6 +118,21 @@ impl<'a> Oracle<'a> {
     /// Evaluations made.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
+    }
+
+    /// Linearisations made.
+    pub fn linearisations(&self) -> u64 {
+        self.linearisations
+    }
+
+    /// Conic subproblems solved or given up.
+    pub fn conic_solves(&self) -> u64 {
+        self.conic_solves
+    }
+
+    /// Conic subproblems given up.
+    pub fn conic_failures(&self) -> u64 {
+        self.conic_failures
     }
 
     /// Time spent inside the problem.
@@ -147,6 +171,25 @@ impl<'a> Oracle<'a> {
         }
         self.watch.add_evaluations(points.len() as u64);
         if cut.is_some() { Err(Stop::BudgetSpent) } else { Ok(()) }
+    }
+
+    /// Values and first derivatives of the problem's parts at a point.
+    pub fn linearise(&mut self, x: &[f64]) -> Result<Linearisation, Stop> {
+        self.check()?;
+        let composite = self.problem.composite().ok_or(Stop::NoDerivatives)?;
+        let clock = Instant::now();
+        let linearisation = composite.linearise(x);
+        self.in_problem += clock.elapsed();
+        self.linearisations += 1;
+        Ok(linearisation)
+    }
+
+    /// Counts the conic subproblem that `solve` solves, or fails to.
+    pub fn conic<S>(&mut self, solve: impl FnOnce() -> Option<S>) -> Option<S> {
+        self.conic_solves += 1;
+        let solution = solve();
+        self.conic_failures += u64::from(solution.is_none());
+        solution
     }
 
     /// The improvements and, unless no cost was a number, the last evaluation, in order.

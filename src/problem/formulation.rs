@@ -5,7 +5,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Accuracy, Assessment, Bounds, Boxes, Evaluation, Problem, Reorientation};
+use super::{Accuracy, Assessment, Bounds, Boxes, Composite, Evaluation, Problem, Reorientation};
 
 /// The variables in which an optimiser sees the task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -104,5 +104,9 @@ impl Problem for Formulated {
         let (coefficients, duration) = self.decode(x);
         let assessment = self.task.assess(&coefficients, duration);
         Evaluation { cost: assessment.cost, violation: assessment.excess.iter().sum() }
+    }
+
+    fn composite(&self) -> Option<&dyn Composite> {
+        (self.formulation == Formulation::TimeFree).then_some(self)
     }
 }

@@ -1,11 +1,13 @@
 //! What an optimiser sees: a box and a cost.
 
+mod composite;
 mod formulation;
 mod motion;
 mod published;
 mod reorientation;
 mod settings;
 
+pub use composite::{Composite, Linearisation, Piece};
 pub use formulation::{Formulated, Formulation};
 pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};
@@ -26,6 +28,11 @@ pub trait Problem: Sync {
         for (x, evaluation) in points.iter().zip(out) {
             *evaluation = self.evaluate(x);
         }
+    }
+
+    /// The same problem with first derivatives, where it has them.
+    fn composite(&self) -> Option<&dyn Composite> {
+        None
     }
 }
 

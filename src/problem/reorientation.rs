@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::Serialize;
 
 use crate::attitude::net_rotation;
+use crate::scalar::Scalar;
 use crate::task::Task;
-use crate::trajectory::{Family, Peaks};
+use crate::trajectory::{Family, Path, Peaks};
 
 /// The base error that counts as one: `k_q = sin(½ · 1°)` (eq. 33; its "δ" is π).
 const K_Q_DEG: f64 = 1.0;
@@ -90,15 +91,13 @@ impl Reorientation {
     /// The motion along the path with these coefficients, in `duration` seconds or, without one, in
     /// the shortest time within the limits.
     pub fn assess(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment {
-        let Accuracy { attitude_steps, peak_intervals } = self.accuracy;
         let path = self.family.path(coefficients);
-        let peaks = Peaks::of(&path, peak_intervals);
+        let peaks = Peaks::of(&path, self.accuracy.peak_intervals);
         let (duration, excess) = match duration {
             Some(duration) => (duration, peaks.over(duration).excess(&self.task.limits)),
             None => (peaks.shortest_duration(&self.task.limits), [0.0; 3]),
         };
-        let end = self.task.start.base * net_rotation(&self.task.robot, &path, attitude_steps);
-        let attitude_error = attitude_error(&self.task.goal.base, &end);
+        let attitude_error = self.base_error(&path).norm();
         Assessment {
             cost: cost(self.task.base_weight, attitude_error, duration, &excess),
             attitude_error,
@@ -109,6 +108,27 @@ impl Reorientation {
     }
 }
 
+impl Reorientation {
+    /// `δq_b` of eq. 20 at the end of a path.
+    pub(super) fn base_error<T: Scalar>(&self, path: &Path<'_, T>) -> Vector3<T> {
+        let Task { robot, start, goal, .. } = &*self.task;
+        let relative = (goal.base.inverse() * start.base).into_inner();
+        let relative = Quaternion::from(relative.coords.map(T::of));
+        let net = net_rotation(robot, path, self.accuracy.attitude_steps);
+        (relative * net.into_inner()).imag()
+    }
+
+    /// What `‖δq_b‖` and `t_f` weigh in `J` where no limit is exceeded.
+    pub(super) fn weights(&self) -> (f64, f64) {
+        weights(self.task.base_weight)
+    }
+}
+
+fn weights(base_weight: f64) -> (f64, f64) {
+    let k_q = (K_Q_DEG.to_radians() / 2.0).sin();
+    (base_weight / k_q, 1.0 - base_weight)
+}
+
 /// `‖δq_b‖` of eq. 20, the vector part of the rotation from the goal to `end`.
 pub(super) fn attitude_error(goal: &UnitQuaternion<f64>, end: &UnitQuaternion<f64>) -> f64 {
     (goal.inverse() * end).imag().norm()
@@ -116,9 +136,8 @@ pub(super) fn attitude_error(goal: &UnitQuaternion<f64>, end: &UnitQuaternion<f6
 
 /// `J` of eq. 25.
 pub(super) fn cost(base_weight: f64, error: f64, duration: f64, excess: &[f64; 3]) -> f64 {
-    let k_q = (K_Q_DEG.to_radians() / 2.0).sin();
-    let time_weight = 1.0 - base_weight;
-    base_weight * error / k_q + time_weight * duration + penalty(excess)
+    let (error_weight, time_weight) = weights(base_weight);
+    error_weight * error + time_weight * duration + penalty(excess)
 }
 
 fn penalty(excess: &[f64; 3]) -> f64 {

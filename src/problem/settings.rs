@@ -153,7 +153,7 @@ impl BoxTable {
         };
         let mut all = coefficient.iter().chain(&duration).chain(&alpha);
         if !all.all(|bound| bound.is_finite()) {
-            let message = "the box is too wide: durations or powers of time are infinite in it";
+            let message = "durations or powers of time are infinite in this box: are limits and box of a sensible size?";
             return Err(document.error_at(self.coefficient.span(), message, None));
         }
         Ok(Boxes { coefficient, duration, alpha })

@@ -51,6 +51,17 @@ impl<'a, T: Scalar> Path<'a, T> {
         self.spans.iter().zip(rows).map(|(span, free)| JointPath { span, free })
     }
 
+    /// One joint's part.
+    ///
+    /// # Panics
+    ///
+    /// Panics when there is no such joint.
+    pub fn joint(&self, index: usize) -> JointPath<'_, T> {
+        let terms = self.free.len() / self.spans.len();
+        let free = &self.free[index * terms..(index + 1) * terms];
+        JointPath { span: &self.spans[index], free }
+    }
+
     /// Writes every joint's angle \[rad\] and its derivative by `τ` \[rad\].
     pub fn angles_and_rates(&self, tau: f64, angles: &mut [T], rates: &mut [T]) {
         for ((angle, rate), joint) in angles.iter_mut().zip(rates).zip(self.joints()) {

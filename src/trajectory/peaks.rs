@@ -30,6 +30,17 @@ impl Peak {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Limits(pub Vec<[f64; 3]>);
 
+/// A local maximum of `|θ'|`, `|θ''|` or `|θ'''|` along a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LocalPeak {
+    /// Index of the joint.
+    pub joint: usize,
+    /// 1 for the rate, 2 for the acceleration, 3 for the jerk.
+    pub order: usize,
+    /// Where, in normalised time.
+    pub tau: f64,
+}
+
 /// A joint's angle and first four derivatives at one time.
 type Sample = [f64; 5];
 
@@ -48,6 +59,31 @@ impl Peaks {
             [1, 2, 3].map(|order| peak(&joint, order, &samples, width))
         });
         Self(peaks.collect())
+    }
+
+    /// All local maxima that ask for a duration not below `share` of the longest asked for.
+    pub fn local(
+        path: &Path<'_, f64>,
+        intervals: usize,
+        limits: &Limits,
+        share: f64,
+    ) -> Vec<LocalPeak> {
+        let width = 1.0 / intervals as f64;
+        let mut asked: Vec<(LocalPeak, f64)> = Vec::new();
+        for (joint, part) in path.joints().enumerate() {
+            let samples: Vec<Sample> =
+                (0..=intervals).map(|i| part.derivatives(i as f64 * width)).collect();
+            for order in 1..=3 {
+                let limit = limits.0[joint][order - 1];
+                asked.extend(local_peaks(&part, order, &samples, width).map(|peak| {
+                    let duration = (peak.value / limit).powf(1.0 / order as f64);
+                    (LocalPeak { joint, order, tau: peak.tau }, duration)
+                }));
+            }
+        }
+        let longest = asked.iter().map(|(_, duration)| *duration).fold(0.0, f64::max);
+        asked.retain(|(_, duration)| *duration >= share * longest);
+        asked.into_iter().map(|(place, _)| place).collect()
     }
 
     /// The same path's peaks when it lasts `duration` seconds \[rad/s, rad/s², rad/s³\].
@@ -92,6 +128,26 @@ fn peak(joint: &JointPath<'_, f64>, order: usize, samples: &[Sample], width: f64
         }
     }
     best
+}
+
+/// The local maxima of one derivative's absolute value, both ends included where it falls away from
+/// them.
+fn local_peaks<'a>(
+    joint: &'a JointPath<'_, f64>,
+    order: usize,
+    samples: &'a [Sample],
+    width: f64,
+) -> impl Iterator<Item = Peak> + 'a {
+    let falls = move |s: &Sample, outward: f64| s[order] * s[order + 1] * outward > 0.0;
+    let end = |s: &Sample, tau| Peak { value: s[order].abs(), tau };
+    let last = samples.len() - 1;
+    let start = falls(&samples[0], -1.0).then(|| end(&samples[0], 0.0));
+    let finish = falls(&samples[last], 1.0).then(|| end(&samples[last], 1.0));
+    let inner = samples.windows(2).enumerate().filter_map(move |(i, pair)| {
+        let arch = arch_bound(&pair[0], &pair[1], order, width) > 0.0;
+        arch.then(|| refine(joint, order, i as f64 * width, width, pair))
+    });
+    inner.chain(start).chain(finish)
 }
 
 /// What an arch between two samples can reach at most, or zero where the slope does not turn from up

@@ -38,12 +38,29 @@ fn replay_gives_both_readings() {
 #[test]
 fn replay_reads_what_plan_found() {
     let folder = Folder::new();
-    let plan = json(&folder, &["plan", "--json", "--budget", "3000", "--seed", "4"]);
+    let plan =
+        json(&folder, &["plan", "--json", "--optimiser", "pso", "--budget", "3000", "--seed", "4"]);
     let text =
         format!("[motion]\nt_f = {}\ncoefficients = {}\n", plan["t_f"], plan["coefficients"]);
     let replay = json(&folder.with("motion.toml", text), &["replay", "motion.toml", "--json"]);
     near(&replay["readings"][0]["j"], plan["j"].as_f64().unwrap(), 1e-9);
     near(&replay["readings"][0]["residual_deg"], plan["residual_deg"].as_f64().unwrap(), 1e-9);
+}
+
+/// A task with nothing to do and one that cannot be done in finite time are no reason to panic.
+#[test]
+fn plan_survives_degenerate_tasks() {
+    let still = "[task.start]\njoints_deg = [0, 0, 0, 0, 0, 0]\nbase_zyx_deg = [0, 0, 0]\n\
+                 [task.goal]\njoints_deg = [0, 0, 0, 0, 0, 0]\n";
+    let stuck = "[task.limits]\nrate_deg_s = 1e-308\n";
+    for (text, code) in [(still, 0), (stuck, 2)] {
+        for optimiser in ["scp", "pso"] {
+            let folder = Folder::new().with("task.toml", text);
+            let args = ["plan", "task.toml", "--optimiser", optimiser, "--budget", "300"];
+            let output = folder.run(&args);
+            assert_eq!(output.status.code(), Some(code), "{optimiser}: {}", stderr(&output));
+        }
+    }
 }
 
 #[test]

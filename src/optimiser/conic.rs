@@ -1,0 +1,126 @@
+//! The convex subproblem of [`Scp`](super::Scp), solved by Clarabel.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SecondOrderConeT, SolverStatus,
+};
+use nalgebra::{DMatrix, DVector};
+
+use crate::problem::Linearisation;
+
+/// Minimise over `d`
+///
+/// ```text
+/// a ‖r + R d‖ + b max_p (h_p + g_p · d) + ½ dᵀ B d     within   lower ≤ d ≤ upper
+/// ```
+///
+/// in the variables `(d, T, t)` with `T ≥ h_p + g_p · d` and `(t, r + R d)` in the second-order cone.
+pub(super) struct Subproblem<'a> {
+    pub(super) parts: &'a Linearisation,
+    /// `r`, `h`: those of the linearisation, or corrected ones.
+    pub(super) residual: &'a DVector<f64>,
+    pub(super) values: &'a [f64],
+    pub(super) curvature: &'a DMatrix<f64>,
+    pub(super) lower: &'a [f64],
+    pub(super) upper: &'a [f64],
+}
+
+/// A solution.
+pub(super) struct Step {
+    pub(super) d: DVector<f64>,
+    /// The subproblem's minimum.
+    pub(super) cost: f64,
+    /// Multiplier of each `h_p`; they add up to `b`.
+    pub(super) lambda: DVector<f64>,
+    /// Multiplier of the residual, of length `a` at most.
+    pub(super) nu: DVector<f64>,
+}
+
+impl Subproblem<'_> {
+    /// The solution, unless Clarabel fails.
+    pub(super) fn solve(&self) -> Option<Step> {
+        let (n, m) = (self.lower.len(), self.residual.len());
+        let (duration, norm) = (n, n + 1);
+        let mut rows = Rows::default();
+        for (piece, value) in self.parts.pieces.iter().zip(self.values) {
+            let slopes = piece.gradient.iter().enumerate().map(|(j, g)| (j, *g));
+            rows.push(slopes.chain([(duration, -1.0)]), -value);
+        }
+        for j in 0..n {
+            rows.push([(j, 1.0)], self.upper[j]);
+            rows.push([(j, -1.0)], -self.lower[j]);
+        }
+        let linear = rows.len();
+        rows.push([(norm, -1.0)], 0.0);
+        for k in 0..m {
+            let slopes = (0..n).map(|j| (j, -self.parts.residual_jacobian[(k, j)]));
+            rows.push(slopes, self.residual[k]);
+        }
+        let mut q = vec![0.0; n + 2];
+        (q[duration], q[norm]) = (self.parts.max_weight, self.parts.norm_weight);
+        let curvature = upper_triangle(self.curvature, n + 2);
+        let cones = [NonnegativeConeT(linear), SecondOrderConeT(m + 1)];
+        let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
+        let a = rows.matrix(n + 2);
+        let mut solver = DefaultSolver::new(&curvature, &q, &a, &rows.b, &cones, settings).ok()?;
+        solver.solve();
+        let solution = &solver.solution;
+        if !matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
+            return None;
+        }
+        let pieces = self.parts.pieces.len();
+        Some(Step {
+            d: DVector::from_column_slice(&solution.x[..n]),
+            cost: solution.obj_val,
+            lambda: DVector::from_column_slice(&solution.z[..pieces]),
+            nu: -DVector::from_column_slice(&solution.z[linear + 1..]),
+        })
+    }
+}
+
+/// A sparse matrix and a right-hand side, row by row.
+#[derive(Default)]
+struct Rows {
+    row_of: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+    b: Vec<f64>,
+}
+
+impl Rows {
+    fn push(&mut self, entries: impl IntoIterator<Item = (usize, f64)>, b: f64) {
+        for (column, value) in entries {
+            self.row_of.push(self.b.len());
+            self.columns.push(column);
+            self.values.push(value);
+        }
+        self.b.push(b);
+    }
+
+    fn len(&self) -> usize {
+        self.b.len()
+    }
+
+    fn matrix(&self, columns: usize) -> CscMatrix<f64> {
+        CscMatrix::new_from_triplets(
+            self.b.len(),
+            columns,
+            self.row_of.clone(),
+            self.columns.clone(),
+            self.values.clone(),
+        )
+    }
+}
+
+/// The upper triangle of a symmetric matrix in the corner of a larger one.
+fn upper_triangle(matrix: &DMatrix<f64>, size: usize) -> CscMatrix<f64> {
+    let n = matrix.ncols();
+    let entries = || (0..n).flat_map(|j| (0..=j).map(move |i| (i, j)));
+    CscMatrix::new_from_triplets(
+        size,
+        size,
+        entries().map(|(i, _)| i).collect(),
+        entries().map(|(_, j)| j).collect(),
+        entries().map(|(i, j)| matrix[(i, j)]).collect(),
+    )
+}

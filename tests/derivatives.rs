@@ -1,0 +1,88 @@
+//! First derivatives of the composite cost against differences, and what they are for: the optimum.
+
+use std::sync::Arc;
+
+use driftless::optimiser::{Optimiser, Scp};
+use driftless::oracle::{Oracle, Rng, Watch};
+use driftless::problem::{Composite, Formulated, Formulation, Problem, TaskFile};
+
+fn paper() -> Formulated {
+    let document = TaskFile::paper();
+    let (problem, boxes) = TaskFile::read(&document).unwrap().build(&document).unwrap();
+    Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes)
+}
+
+/// Differences of sixth order, extrapolated from three central ones.
+fn difference(value: impl Fn(f64) -> f64) -> f64 {
+    let h = 1e-4;
+    let central = |h: f64| (value(h) - value(-h)) / (2.0 * h);
+    let (d1, d2, d3) = (central(h), central(2.0 * h), central(3.0 * h));
+    (15.0 * d1 - 6.0 * d2 + d3) / 10.0
+}
+
+fn check(x: &[f64]) {
+    let problem = paper();
+    let here = problem.linearise(x);
+    let shifted = |j: usize, step: f64| {
+        let mut x = x.to_vec();
+        x[j] += step;
+        problem.linearise(&x)
+    };
+    for j in 0..x.len() {
+        for k in 0..3 {
+            let expected = difference(|step| shifted(j, step).residual[k]);
+            let found = here.residual_jacobian[(k, j)];
+            assert!(
+                (found - expected).abs() < 1e-8,
+                "residual {k}, variable {j}: {found} {expected}"
+            );
+        }
+        let largest = here.pieces.iter().map(|p| p.value).fold(0.0, f64::max);
+        for piece in here.pieces.iter().filter(|p| p.value > 0.85 * largest) {
+            let same = |step: f64| {
+                let there = shifted(j, step);
+                let near = there.pieces.into_iter().filter(|p| {
+                    p.place.joint == piece.place.joint
+                        && p.place.order == piece.place.order
+                        && (p.place.tau - piece.place.tau).abs() < 0.05
+                });
+                near.map(|p| p.value).next().unwrap()
+            };
+            let (found, expected) = (piece.gradient[j], difference(same));
+            assert!(
+                (found - expected).abs() < 1e-8 * piece.gradient.amax(),
+                "{:?}, variable {j}: {found} {expected}",
+                piece.place
+            );
+        }
+    }
+}
+
+#[test]
+fn agree_with_differences() {
+    let mut rng = Rng::new(11);
+    for _ in 0..5 {
+        let x: Vec<f64> = paper().bounds().iter().map(|[l, u]| 0.5 * rng.uniform(l, u)).collect();
+        check(&x);
+    }
+}
+
+#[test]
+fn agree_with_differences_without_bumps() {
+    check(&[0.0; 12]);
+}
+
+/// The best motion known, J = 0.7818485, was found by IPOPT 3.14 on a grid of 601 points.
+#[test]
+fn multi_start_finds_the_best_known_motion() {
+    let problem = paper();
+    let watch = Watch::default();
+    let mut oracle = Oracle::new(&problem, 20_000, &watch);
+    let stop = Scp::default().minimise(&mut oracle, &mut Rng::new(1));
+    assert_eq!(stop, Ok(()));
+    let (_, motion) = problem.certify(&oracle.best().unwrap().x);
+    assert!(motion.cost <= 0.781_850, "{}", motion.cost);
+    assert!(motion.residual().to_degrees() < 1e-4);
+    assert!(motion.excess.iter().all(|&excess| excess < 1e-6));
+    assert!(oracle.linearisations() > 0 && oracle.conic_solves() > 0);
+}
