@@ -17,7 +17,6 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 pub(super) struct Bar {
     display: ProgressBar,
     done: Arc<AtomicBool>,
-    on_terminal: bool,
     painter: Option<JoinHandle<()>>,
 }
 
@@ -45,12 +44,13 @@ impl Bar {
                 }
             })
         };
-        Self { display: bar, done, on_terminal, painter: Some(painter) }
+        Self { display: bar, done, painter: Some(painter) }
     }
 
     /// Shows a line: above the bar on a terminal, by itself elsewhere.
+    #[cfg(feature = "harness")]
     pub(super) fn line(&self, line: &str) {
-        if self.on_terminal {
+        if std::io::stderr().is_terminal() {
             self.display.println(line);
         } else {
             eprintln!("{line}");

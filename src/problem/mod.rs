@@ -12,6 +12,7 @@ pub use formulation::{Formulated, Formulation};
 pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};
 pub use reorientation::{Accuracy, Assessment, Reorientation};
+#[cfg(feature = "harness")]
 pub(crate) use settings::DEFAULTS;
 pub use settings::{Boxes, TaskFile, TrajectoryTable};
 

@@ -165,7 +165,6 @@ fn motions() {
 fn arguments() {
     for (name, args) in [
         ("no_such_file", &["plan", "nowhere.toml"][..]),
-        ("no_verb", &[]),
         ("unknown_verb", &["pln"]),
         ("unknown_optimiser", &["plan", "--optimiser", "psoo"]),
         ("seed_not_a_number", &["plan", "--seed", "first"]),
@@ -177,6 +176,7 @@ fn arguments() {
     }
     #[cfg(feature = "harness")]
     for (name, args) in [
+        ("no_verb", &[][..]),
         ("shard_too_large", &["run", "--shard", "4/4"][..]),
         ("shard_not_a_fraction", &["run", "--shard", "half"]),
         ("no_seeds", &["run", "--seeds", "0"]),
