@@ -72,10 +72,9 @@ pub fn runs(plan: &Plan, frame: &DataFrame) -> PolarsResult<Vec<Run>> {
     (0..frame.height()).filter_map(|i| row(i).transpose()).collect()
 }
 
-/// The run with the lowest cost, if any run found a motion.
-pub fn best_run(runs: &[Run]) -> Option<&Run> {
-    let found = runs.iter().filter(|run| run.cost.is_finite());
-    found.min_by(|a, b| a.cost.total_cmp(&b.cost))
+/// The run with the lowest cost, if any found a motion.
+pub fn best_run<'a>(runs: impl Iterator<Item = &'a Run>) -> Option<&'a Run> {
+    runs.filter(|run| run.cost.is_finite()).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
 /// Groups runs by instance and optimiser, in the order of their first row.

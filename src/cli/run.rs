@@ -142,20 +142,23 @@ fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
     let figures = folder.join("figures");
     let curves = convergence(plan, &runs, &store.read("traces", keys())?)?;
     plot::convergence(&curves).save(&figures, "convergence")?;
-    if let Some(best) = best_run(&runs) {
-        let instance = &plan.instances[best.instance];
+    for (i, instance) in plan.instances.iter().enumerate() {
+        let Some(best) = best_run(runs.iter().filter(|run| run.instance == i)) else { continue };
         let optimiser = &plan.optimisers[best.optimiser].label;
-        let on = if instance.label.is_empty() { "" } else { " on " };
+        let on = if instance.label.is_empty() { "" } else { " for " };
         say!(
-            "best motion: {optimiser}{on}{}, seed {}: J {:.6}, t_f {:.4} s",
+            "best motion{on}{}: {optimiser}, seed {}: J {:.6}, t_f {:.4} s",
             instance.label,
             best.seed,
             best.cost,
             best.duration
         );
-        let problem = &instance.problem;
-        let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
-        plot::write_motion_figures(&figures, &motion, problem.task())?;
+        // Costs of different instances do not compare, so there is no best of all to draw.
+        if plan.instances.len() == 1 {
+            let problem = &instance.problem;
+            let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
+            plot::write_motion_figures(&figures, &motion, problem.task())?;
+        }
     }
     say!("results: {}, figures: {}", folder.display(), figures.display());
     let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();

@@ -123,6 +123,11 @@ fn figures_come_in_three_formats_with_text_that_is_there() {
     let folder = Folder::new().with("small.toml", SMALL);
     run(&folder, &["small.toml", "--out", "out"]);
     let figures = files(&folder.path().join("out/figures"));
+    assert_eq!(figures.len(), 3, "with a sweep there is no best motion of all");
+    let one = SMALL.replace("[40, 80]", "[80]");
+    let folder = folder.with("one.toml", one);
+    run(&folder, &["one.toml", "--out", "one"]);
+    let figures = files(&folder.path().join("one/figures"));
     for name in ["joint-angles", "joint-derivatives", "base-attitude", "convergence"] {
         let svg = String::from_utf8(figures[&format!("{name}.svg")].clone()).unwrap();
         assert!(svg.contains("<path") && !svg.contains("<text"), "{name}: text is no outline");
