@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use polars::prelude::*;
 
 use super::Record;
-use crate::output::{FileError, write_file};
+use crate::output::{FileError, create_folder, write_file};
 
 /// The tables, in the order in which a run's are written.
 const TABLES: [&str; 3] = ["traces", "clocks", "runs"];
@@ -49,8 +49,7 @@ impl Store {
     /// Opens a folder, made if need be.
     pub fn open(folder: &Path) -> Result<Self, StoreError> {
         for table in TABLES {
-            let path = folder.join(table);
-            fs::create_dir_all(&path).map_err(|source| io_error("create", &path, source))?;
+            create_folder(&folder.join(table))?;
         }
         Ok(Self { folder: folder.to_owned() })
     }

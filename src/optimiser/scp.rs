@@ -92,7 +92,9 @@ impl Scp {
                 return Ok(Ending::Stalled);
             }
             let region = Region::around(oracle, &here.x, radius);
-            let Some(step) = region.solve(oracle, &here.parts, None, &curvature) else {
+            let Some(step) =
+                region.solve(oracle, &here.parts, &Values::of(&here.parts), &curvature)
+            else {
                 radius /= 4.0;
                 continue;
             };
@@ -154,7 +156,7 @@ impl Iterate {
             return Ok((there, step));
         }
         let values = corrected(&self.parts, &there.parts, &step.d);
-        let Some(second) = region.solve(oracle, &self.parts, Some(&values), curvature) else {
+        let Some(second) = region.solve(oracle, &self.parts, &values, curvature) else {
             return Ok((there, step));
         };
         let x = &self.x + &second.d;
@@ -185,16 +187,15 @@ impl Region {
         Self { lower, upper, extent }
     }
 
-    /// Solves the subproblem, with corrected values of `r` and `h` if there are any.
+    /// Solves the subproblem with these values of `r` and `h`, the linearisation's or corrected ones.
     fn solve(
         &self,
         oracle: &mut Oracle<'_>,
         parts: &Linearisation,
-        corrected: Option<&Values>,
+        values: &Values,
         curvature: &Curvature,
     ) -> Option<Step> {
-        let own = Values::of(parts);
-        let Values { residual, pieces } = corrected.unwrap_or(&own);
+        let Values { residual, pieces } = values;
         let Self { lower, upper, .. } = self;
         let curvature = &curvature.0;
         let problem = Subproblem { parts, residual, values: pieces, curvature, lower, upper };

@@ -1,8 +1,7 @@
 //! ZYX Euler angles of the base over time: the paper's Figure 6.
 
 use super::figure::Figure;
-use super::joint_angles::{MARGIN, extent};
-use super::panel::{Axis, Line, Panel};
+use super::panel::{Axis, Line, MARGIN, Panel, extent};
 use super::style::Stroke;
 use crate::problem::Motion;
 use crate::task::Task;
@@ -17,13 +16,10 @@ pub fn base_attitude(motion: &Motion, task: &Task) -> Figure {
     let angles = motion.base_zyx();
     for (k, name) in ["yaw ψ", "pitch ϑ", "roll φ"].into_iter().enumerate() {
         let values = angles.iter().map(|zyx| zyx[k].to_degrees());
-        let points = motion.time.iter().zip(values).map(|(t, v)| [*t, v]).collect();
-        lines.push(Line { name: name.to_owned(), stroke: Stroke::of(k), points });
+        lines.push(Line::over_time(name, Stroke::of(k), &motion.time, values));
     }
     for (i, angle) in goals.into_iter().enumerate() {
-        let name = if i == 0 { "goal" } else { "" }.to_owned();
-        let points = vec![[0.0, angle], [end, angle]];
-        lines.push(Line { name, stroke: Stroke::reference(), points });
+        lines.push(Line::level(if i == 0 { "goal" } else { "" }, angle, end));
     }
     let panel = Panel {
         x: Axis::linear("time t [s]", [0.0, end], 0.0),

@@ -1,8 +1,7 @@
 //! Best cost against evaluations.
 
 use super::figure::Figure;
-use super::joint_angles::MARGIN;
-use super::panel::{Axis, Band, Line, Panel};
+use super::panel::{Axis, Band, Line, MARGIN, Panel};
 use super::style::Stroke;
 use crate::analysis::Curve;
 

@@ -10,7 +10,11 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::figure::PlotError;
 use super::style::{FONT, GRID, INK, Stroke, text_size, units};
 
-type Area<'a, 'b> = DrawingArea<SVGBackend<'a>, Shift>;
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Room above and to the right of the axes \[mm\].
+const TOP: f64 = 1.2;
+const RIGHT: f64 = 2.0;
 
 /// One pair of axes with its lines.
 #[derive(Debug, Clone)]
@@ -158,20 +162,54 @@ fn power(mantissa: f64, exponent: i32) -> String {
     if mantissa == 1.0 { format!("10{digits}") } else { format!("{mantissa}·10{digits}") }
 }
 
+/// Room that the horizontal axis needs \[mm\].
+fn below(with_label: bool) -> f64 {
+    if with_label { 8.0 } else { 4.4 }
+}
+
+impl Line {
+    /// Values at given times.
+    pub(super) fn over_time(
+        name: &str,
+        stroke: Stroke,
+        time: &[f64],
+        values: impl Iterator<Item = f64>,
+    ) -> Self {
+        let points = time.iter().zip(values).map(|(t, v)| [*t, v]).collect();
+        Self { name: name.to_owned(), stroke, points }
+    }
+
+    /// A reference at one height, from time zero to `end`.
+    pub(super) fn level(name: &str, height: f64, end: f64) -> Self {
+        let points = vec![[0.0, height], [end, height]];
+        Self { name: name.to_owned(), stroke: Stroke::reference(), points }
+    }
+}
+
+/// Free share of a vertical axis above and below its lines.
+pub(super) const MARGIN: f64 = 0.04;
+
+/// The smallest and the largest ordinate of all lines.
+pub(super) fn extent(lines: &[Line]) -> [f64; 2] {
+    let values = lines.iter().flat_map(|line| line.points.iter().map(|[_, y]| *y));
+    let [low, high] =
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], y| [l.min(y), h.max(y)]);
+    if high - low > 1e-9 { [low, high] } else { [low - 1.0, high + 1.0] }
+}
+
 impl Panel {
     /// Draws the panel; `left` is the room for the vertical axis \[mm\].
     pub(super) fn draw(
         &self,
-        area: &Area<'_, '_>,
+        area: &Area<'_>,
         left: f64,
         with_x_label: bool,
     ) -> Result<(), PlotError> {
-        let below = if with_x_label { 8.0 } else { 4.4 };
         let mut chart = ChartBuilder::on(area)
-            .margin_top(units(1.2))
-            .margin_right(units(2.0))
+            .margin_top(units(TOP))
+            .margin_right(units(RIGHT))
             .set_label_area_size(LabelAreaPosition::Left, units(left))
-            .set_label_area_size(LabelAreaPosition::Bottom, units(below))
+            .set_label_area_size(LabelAreaPosition::Bottom, units(below(with_x_label)))
             .build_cartesian_2d(self.x.clone(), self.y.clone())?;
         let text = (FONT, text_size()).into_font().color(&INK);
         let axis = INK.stroke_width(units(0.2).unsigned_abs());
@@ -216,22 +254,17 @@ impl Panel {
     }
 
     /// Axis labels, placed by hand: plotters would put them against the edge of the figure.
-    fn draw_labels(
-        &self,
-        area: &Area<'_, '_>,
-        left: f64,
-        with_x_label: bool,
-    ) -> Result<(), PlotError> {
+    fn draw_labels(&self, area: &Area<'_>, left: f64, with_x_label: bool) -> Result<(), PlotError> {
         let (width, height) = area.dim_in_pixel();
         let (width, height) = (width.cast_signed(), height.cast_signed());
         let text = (FONT, text_size()).into_font().color(&INK);
-        let below = units(if with_x_label { 8.0 } else { 4.4 });
+        let below = units(below(with_x_label));
         if with_x_label {
-            let middle = units(left) + (width - units(left) - units(2.0)) / 2;
+            let middle = units(left) + (width - units(left) - units(RIGHT)) / 2;
             let style = text.clone().pos(Pos::new(HPos::Center, VPos::Bottom));
             area.draw_text(&self.x.label, &style, (middle, height - units(0.3)))?;
         }
-        let middle = units(1.2) + (height - below - units(1.2)) / 2;
+        let middle = units(TOP) + (height - below - units(TOP)) / 2;
         let style = text.transform(FontTransform::Rotate270).pos(Pos::new(HPos::Center, VPos::Top));
         area.draw_text(&self.y.label, &style, (units(0.3), middle))?;
         Ok(())

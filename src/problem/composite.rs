@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use num_dual::{Derivative, DualSVec64};
 
 use super::{Formulated, Problem, Reorientation};
-use crate::trajectory::{LocalPeak, Path, Peaks};
+use crate::trajectory::{LocalPeak, Path, Peaks, duration_asked};
 
 /// A cost that is convex in smooth parts: `J(x) = a ‖r(x)‖ + b max_p h_p(x)`.
 pub trait Composite: Problem {
@@ -70,7 +70,7 @@ impl Reorientation {
                 }
             }
             for (p, place) in places.iter().enumerate() {
-                let duration = duration_asked(&path, place, limits.0[place.joint][place.order - 1]);
+                let duration = duration_at(&path, place, limits.0[place.joint][place.order - 1]);
                 values[p] = duration.re;
                 for (j, slope) in slopes(&duration).iter().take(width).enumerate() {
                     gradients[(first + j, p)] = *slope;
@@ -111,15 +111,11 @@ fn slopes(dual: &Dual) -> [f64; WIDTH] {
     dual.eps.0.map_or([0.0; WIDTH], Into::into)
 }
 
-/// `(|θ^(k)| / limit)^(1/k)`: the shortest duration within one limit at one place of the path \[s\].
-fn duration_asked(path: &Path<'_, Dual>, place: &LocalPeak, limit: f64) -> Dual {
+/// The shortest duration within one limit at one place of the path \[s\].
+fn duration_at(path: &Path<'_, Dual>, place: &LocalPeak, limit: f64) -> Dual {
     let value = path.joint(place.joint).derivatives(place.tau)[place.order];
-    let share = (if value.re < 0.0 { -value } else { value }) / limit;
-    match place.order {
-        1 => share,
-        2 => num_dual::DualNum::sqrt(&share),
-        _ => num_dual::DualNum::cbrt(&share),
-    }
+    let magnitude = if value.re < 0.0 { -value } else { value };
+    duration_asked(magnitude / limit, place.order)
 }
 
 impl Composite for Formulated {

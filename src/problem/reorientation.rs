@@ -106,9 +106,7 @@ impl Reorientation {
             peaks: peaks.over(duration),
         }
     }
-}
 
-impl Reorientation {
     /// `δq_b` of eq. 20 at the end of a path.
     pub(super) fn base_error<T: Scalar>(&self, path: &Path<'_, T>) -> Vector3<T> {
         let Task { robot, start, goal, .. } = &*self.task;

@@ -12,4 +12,4 @@ mod peaks;
 pub use basis::Basis;
 pub use family::Family;
 pub use path::{JointPath, Path};
-pub use peaks::{Limits, LocalPeak, Peak, Peaks};
+pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked};

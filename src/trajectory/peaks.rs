@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::path::{JointPath, Path};
+use crate::scalar::Scalar;
 
 /// Largest `|θ'|`, `|θ''|`, `|θ'''|` of each joint over the whole path.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,8 +55,7 @@ impl Peaks {
         let width = 1.0 / intervals as f64;
         let mut samples = Vec::with_capacity(intervals + 1);
         let peaks = path.joints().map(|joint| {
-            samples.clear();
-            samples.extend((0..=intervals).map(|i| joint.derivatives(i as f64 * width)));
+            sample(&joint, intervals, &mut samples);
             [1, 2, 3].map(|order| peak(&joint, order, &samples, width))
         });
         Self(peaks.collect())
@@ -69,15 +69,15 @@ impl Peaks {
         share: f64,
     ) -> Vec<LocalPeak> {
         let width = 1.0 / intervals as f64;
+        let mut samples = Vec::with_capacity(intervals + 1);
         let mut asked: Vec<(LocalPeak, f64)> = Vec::new();
         for (joint, part) in path.joints().enumerate() {
-            let samples: Vec<Sample> =
-                (0..=intervals).map(|i| part.derivatives(i as f64 * width)).collect();
+            sample(&part, intervals, &mut samples);
             for order in 1..=3 {
                 let limit = limits.0[joint][order - 1];
                 asked.extend(local_peaks(&part, order, &samples, width).map(|peak| {
-                    let duration = (peak.value / limit).powf(1.0 / order as f64);
-                    (LocalPeak { joint, order, tau: peak.tau }, duration)
+                    let place = LocalPeak { joint, order, tau: peak.tau };
+                    (place, duration_asked(peak.value / limit, order))
                 }));
             }
         }
@@ -97,8 +97,8 @@ impl Peaks {
     /// The shortest duration within the limits, in closed form \[s\]:
     /// `max(max|θ'|/v̄, √(max|θ''|/ā), ∛(max|θ'''|/j̄))`.
     pub fn shortest_duration(&self, limits: &Limits) -> f64 {
-        let [rate, acceleration, jerk] = self.largest_ratio(limits);
-        rate.max(acceleration.sqrt()).max(jerk.cbrt())
+        let ratios = self.largest_ratio(limits).into_iter().zip(1..);
+        ratios.map(|(ratio, order)| duration_asked(ratio, order)).fold(0.0, f64::max)
     }
 
     /// `F` of eqs. 26–28: the largest relative excess over the joints, zero when inside.
@@ -114,6 +114,23 @@ impl Peaks {
             }
         }
         largest
+    }
+}
+
+/// Samples a joint's path at the ends of equal intervals.
+fn sample(joint: &JointPath<'_, f64>, intervals: usize, samples: &mut Vec<Sample>) {
+    let width = 1.0 / intervals as f64;
+    samples.clear();
+    samples.extend((0..=intervals).map(|i| joint.derivatives(i as f64 * width)));
+}
+
+/// The shortest duration \[s\] for a derivative that in one second is `ratio` times its limit:
+/// `ratio^(1/order)`.
+pub fn duration_asked<T: Scalar>(ratio: T, order: usize) -> T {
+    match order {
+        1 => ratio,
+        2 => ratio.simd_sqrt(),
+        _ => ratio.simd_cbrt(),
     }
 }
 
