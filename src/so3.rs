@@ -1,6 +1,6 @@
 //! Rotations: the exponential map, smooth at zero.
 
-use nalgebra::{Quaternion, SimdBool, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, SimdBool, UnitQuaternion, Vector3};
 
 use crate::scalar::Scalar;
 
@@ -31,6 +31,18 @@ const SINE: [f64; 8] = [
     -1.0 / 1_307_674_368_000.0,
 ];
 
+/// Coefficients of `(√u − sin √u) / (u √u)` in powers of `u`.
+const LAG: [f64; 8] = [
+    1.0 / 6.0,
+    -1.0 / 120.0,
+    1.0 / 5_040.0,
+    -1.0 / 362_880.0,
+    1.0 / 39_916_800.0,
+    -1.0 / 6_227_020_800.0,
+    1.0 / 1_307_674_368_000.0,
+    -1.0 / 355_687_428_096_000.0,
+];
+
 /// The rotation by `|v|` radians about `v`.
 ///
 /// A series in `|v|²` serves small angles, so that the value and every derivative of it are right
@@ -50,6 +62,20 @@ pub fn exp<T: Scalar>(v: &Vector3<T>) -> UnitQuaternion<T> {
     UnitQuaternion::new_unchecked(Quaternion::from_parts(cosine, vector))
 }
 
+/// The right Jacobian of the exponential map: `exp(v + d) ≈ exp(v) exp(J d)` for small `d`.
+pub fn right_jacobian(v: &Vector3<f64>) -> Matrix3<f64> {
+    let squared = v.dot(v);
+    // (1 − cos |v|) / |v|² is half the square of sin(|v|/2) / (|v|/2).
+    let [first, second] = if squared < 4.0 * SERIES_LIMIT {
+        [polynomial(&SINE, squared / 4.0).powi(2) / 2.0, polynomial(&LAG, squared)]
+    } else {
+        let angle = squared.sqrt();
+        [(1.0 - angle.cos()) / squared, (angle - angle.sin()) / (angle * squared)]
+    };
+    let cross = v.cross_matrix();
+    Matrix3::identity() - cross * first + cross * cross * second
+}
+
 /// Horner's rule, lowest power first.
 fn polynomial<T: Scalar>(coefficients: &[f64], x: T) -> T {
     coefficients.iter().rev().fold(T::zero(), |sum, &c| sum * x + T::of(c))
@@ -66,6 +92,27 @@ mod tests {
             let v = Vector3::new(0.6, -0.64, 0.48) * angle;
             let difference = exp(&v).into_inner() - UnitQuaternion::new(v).into_inner();
             assert!(difference.norm() < 4e-16, "angle {angle}: {difference}");
+        }
+    }
+
+    /// Against central differences of the exponential, across the switch.
+    #[test]
+    fn right_jacobian_is_the_derivative() {
+        for angle in [0.0, 1e-6, 0.3, 0.999_999, 1.000_001, 2.5] {
+            let v = Vector3::new(0.6, -0.64, 0.48) * angle;
+            let jacobian = right_jacobian(&v);
+            for j in 0..3 {
+                let turned = |step: f64| {
+                    let mut there = v;
+                    there[j] += step;
+                    (exp(&v).inverse() * exp(&there)).scaled_axis()
+                };
+                let h = 1e-4;
+                let far = (turned(2.0 * h) - turned(-2.0 * h)) / (4.0 * h);
+                let near = (turned(h) - turned(-h)) / (2.0 * h);
+                let difference = (near * 4.0 - far) / 3.0 - jacobian.column(j);
+                assert!(difference.norm() < 1e-11, "angle {angle}: {difference}");
+            }
         }
     }
 

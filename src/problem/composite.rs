@@ -1,9 +1,10 @@
 //! First derivatives of the time-free cost, for optimisers that use them.
 
-use nalgebra::{DMatrix, DVector};
-use num_dual::{Derivative, DualSVec64};
+use nalgebra::{DMatrix, DVector, Matrix3};
 
 use super::{Formulated, Problem, Reorientation};
+use crate::attitude::net_rotation_slopes;
+use crate::task::Task;
 use crate::trajectory::{LocalPeak, Path, Peaks, duration_asked};
 
 /// A cost that is convex in smooth parts: `J(x) = a ‖r(x)‖ + b max_p h_p(x)`.
@@ -38,12 +39,6 @@ pub struct Piece {
     pub gradient: DVector<f64>,
 }
 
-/// Variables differentiated at a time.
-const WIDTH: usize = 6;
-
-/// A number with its derivatives by [`WIDTH`] variables.
-type Dual = DualSVec64<WIDTH>;
-
 /// How far below the largest, as a share of it, a part may lie to be linearised too.
 const NEAR: f64 = 0.75;
 
@@ -51,37 +46,11 @@ impl Reorientation {
     /// The time-free cost's parts: the vector part of the base's error, and the duration that each
     /// local peak of rate, acceleration and jerk asks for.
     pub(super) fn linearise(&self, coefficients: &[f64]) -> Linearisation {
-        let n = coefficients.len();
         let path = self.family().path(coefficients);
+        let (residual, residual_jacobian) = self.base_error_slopes(&path);
         let limits = &self.task().limits;
         let places = Peaks::local(&path, self.accuracy().peak_intervals, limits, NEAR);
-        let mut residual = DVector::zeros(3);
-        let mut residual_jacobian = DMatrix::zeros(3, n);
-        let mut values = vec![0.0; places.len()];
-        let mut gradients = DMatrix::zeros(n, places.len());
-        for first in (0..n).step_by(WIDTH) {
-            let width = WIDTH.min(n - first);
-            let path = self.family().path(&seeded(coefficients, first, width));
-            let error = self.base_error(&path);
-            for (k, component) in error.iter().enumerate() {
-                residual[k] = component.re;
-                for (j, slope) in slopes(component).iter().take(width).enumerate() {
-                    residual_jacobian[(k, first + j)] = *slope;
-                }
-            }
-            for (p, place) in places.iter().enumerate() {
-                let duration = duration_at(&path, place, limits.0[place.joint][place.order - 1]);
-                values[p] = duration.re;
-                for (j, slope) in slopes(&duration).iter().take(width).enumerate() {
-                    gradients[(first + j, p)] = *slope;
-                }
-            }
-        }
-        let pieces = places.into_iter().zip(values).enumerate().map(|(p, (place, value))| Piece {
-            place,
-            value,
-            gradient: gradients.column(p).into_owned(),
-        });
+        let pieces = places.into_iter().map(|place| self.piece(&path, place));
         let (norm_weight, max_weight) = self.weights();
         Linearisation {
             norm_weight,
@@ -91,31 +60,35 @@ impl Reorientation {
             pieces: pieces.collect(),
         }
     }
-}
 
-/// The coefficients, those of one window with their unit derivatives.
-fn seeded(coefficients: &[f64], first: usize, width: usize) -> Vec<Dual> {
-    let seed = |(i, &c): (usize, &f64)| {
-        let mut dual = Dual::from_re(c);
-        if (first..first + width).contains(&i) {
-            let mut unit = nalgebra::SVector::<f64, WIDTH>::zeros();
-            unit[i - first] = 1.0;
-            dual.eps = Derivative::some(unit);
+    /// The base's error and its derivatives.
+    fn base_error_slopes(&self, path: &Path<'_, f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let Task { robot, start, goal, .. } = &**self.task();
+        let net = net_rotation_slopes(robot, path, self.accuracy().attitude_steps);
+        let error = goal.base.inverse() * start.base * net.rotation;
+        let residual = error.imag();
+        // q ⊗ (0, ½ e) has the vector part ½ (q_w e + q_v × e).
+        let by_turn = (Matrix3::from_diagonal_element(error.w) + residual.cross_matrix()) / 2.0;
+        let jacobian = by_turn * net.by_coefficient;
+        let jacobian = DMatrix::from_column_slice(3, jacobian.ncols(), jacobian.as_slice());
+        (DVector::from_column_slice(residual.as_slice()), jacobian)
+    }
+
+    /// The duration that one limit asks for at one place of the path, and its derivatives.
+    fn piece(&self, path: &Path<'_, f64>, place: LocalPeak) -> Piece {
+        let LocalPeak { joint: index, order, tau } = place;
+        let joint = path.joint(index);
+        let limit = self.task().limits.0[index][order - 1];
+        let derivative = joint.derivatives(tau)[order];
+        let value = duration_asked(derivative.abs() / limit, order);
+        let by_derivative = value / (order as f64 * derivative);
+        let terms = path.basis().terms();
+        let mut gradient = DVector::zeros(self.family().dimension());
+        for (k, slope) in joint.coefficient_slopes(order, tau).enumerate() {
+            gradient[index * terms + k] = by_derivative * slope;
         }
-        dual
-    };
-    coefficients.iter().enumerate().map(seed).collect()
-}
-
-fn slopes(dual: &Dual) -> [f64; WIDTH] {
-    dual.eps.0.map_or([0.0; WIDTH], Into::into)
-}
-
-/// The shortest duration within one limit at one place of the path \[s\].
-fn duration_at(path: &Path<'_, Dual>, place: &LocalPeak, limit: f64) -> Dual {
-    let value = path.joint(place.joint).derivatives(place.tau)[place.order];
-    let magnitude = if value.re < 0.0 { -value } else { value };
-    duration_asked(magnitude / limit, place.order)
+        Piece { place, value, gradient }
+    }
 }
 
 impl Composite for Formulated {

@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::path::windowed;
+
 /// The bumps `64 τ³(1 − τ)³ P_k(x) = (1 − x²)³ P_k(x)`, `x = 2τ − 1`, with `P_k` orthonormal for the weight `(1 − x²)⁶` and `P_0 = 1`:
 /// Gegenbauer polynomials with λ = 13/2. A unit of any coefficient moves the phase equally far in
 /// the mean square, whatever its `k`.
@@ -35,6 +37,15 @@ impl Basis {
     /// `P_0`, `P_1`, … in powers of `x`, lowest first.
     pub fn polynomials(&self) -> &[Vec<f64>] {
         &self.polynomials
+    }
+
+    /// Every bump and its first derivatives by `τ`.
+    pub fn bumps<const N: usize>(&self, tau: f64) -> impl Iterator<Item = [f64; N]> {
+        self.polynomials.iter().map(move |polynomial| {
+            let mut bump = windowed(polynomial, 2.0 * tau - 1.0);
+            bump.iter_mut().enumerate().for_each(|(n, value)| *value *= f64::from(1 << n));
+            bump
+        })
     }
 
     /// One joint's `A_6, A_7, …` from its coefficients.

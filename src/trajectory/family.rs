@@ -62,7 +62,7 @@ impl Family {
                 }
             }
         }
-        Path::new(&self.spans, free)
+        Path::new(&self.spans, &self.basis, free)
     }
 
     /// The paper's `α_6 … , α_7 …, …` \[s⁻⁶, s⁻⁷, …\], one block a power, one value a joint.

@@ -11,5 +11,5 @@ mod peaks;
 
 pub use basis::Basis;
 pub use family::Family;
-pub use path::{JointPath, Path};
+pub use path::{JointPath, Path, PhaseSlopes};
 pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked};

@@ -1,5 +1,8 @@
 //! One path: every joint's angle and derivatives at any normalised time.
 
+use std::ops::Add;
+
+use super::basis::Basis;
 use crate::scalar::Scalar;
 
 /// What a joint's range and end points say of its path.
@@ -29,6 +32,7 @@ impl Span {
 #[derive(Debug, Clone)]
 pub struct Path<'a, T> {
     spans: &'a [Span],
+    basis: &'a Basis,
     /// The polynomials of the free part in powers of `x = 2τ − 1`, one row a joint.
     free: Vec<T>,
 }
@@ -37,18 +41,19 @@ pub struct Path<'a, T> {
 #[derive(Debug, Clone, Copy)]
 pub struct JointPath<'a, T> {
     span: &'a Span,
+    basis: &'a Basis,
     free: &'a [T],
 }
 
 impl<'a, T: Scalar> Path<'a, T> {
-    pub(super) fn new(spans: &'a [Span], free: Vec<T>) -> Self {
-        Self { spans, free }
+    pub(super) fn new(spans: &'a [Span], basis: &'a Basis, free: Vec<T>) -> Self {
+        Self { spans, basis, free }
     }
 
     /// The joints' parts, from the base outward.
     pub fn joints(&self) -> impl ExactSizeIterator<Item = JointPath<'_, T>> {
-        let rows = self.free.chunks_exact(self.free.len() / self.spans.len());
-        self.spans.iter().zip(rows).map(|(span, free)| JointPath { span, free })
+        let rows = self.free.chunks_exact(self.basis.terms());
+        self.spans.iter().zip(rows).map(|(span, free)| JointPath { span, basis: self.basis, free })
     }
 
     /// One joint's part.
@@ -57,9 +62,14 @@ impl<'a, T: Scalar> Path<'a, T> {
     ///
     /// Panics when there is no such joint.
     pub fn joint(&self, index: usize) -> JointPath<'_, T> {
-        let terms = self.free.len() / self.spans.len();
+        let terms = self.basis.terms();
         let free = &self.free[index * terms..(index + 1) * terms];
-        JointPath { span: &self.spans[index], free }
+        JointPath { span: &self.spans[index], basis: self.basis, free }
+    }
+
+    /// The bumps that a path's coefficients multiply.
+    pub fn basis(&self) -> &'a Basis {
+        self.basis
     }
 
     /// Writes every joint's angle \[rad\] and its derivative by `τ` \[rad\].
@@ -70,49 +80,74 @@ impl<'a, T: Scalar> Path<'a, T> {
     }
 }
 
+/// How a joint's angle and rate follow its phase.
+#[derive(Debug, Clone, Copy)]
+pub struct PhaseSlopes<T> {
+    /// `∂θ/∂s`.
+    pub angle: T,
+    /// `∂θ'/∂s`.
+    pub rate: T,
+}
+
 impl<T: Scalar> JointPath<'_, T> {
     /// Angle \[rad\] and its derivative by `τ` (eqs. 11 and 12).
     pub fn angle_and_rate(&self, tau: f64) -> (T, T) {
         let [s, s1] = phase(self.span, self.free, tau);
         let (sin, cos) = s.simd_sin_cos();
         let amplitude = T::of(self.span.amplitude);
-        (amplitude * sin + T::of(self.span.centre), amplitude * cos * s1 * T::of(2.0))
+        (amplitude * sin + T::of(self.span.centre), amplitude * cos * s1)
+    }
+
+    /// How both follow the phase; `∂θ'/∂s'` is `∂θ/∂s`.
+    pub fn phase_slopes(&self, tau: f64) -> PhaseSlopes<T> {
+        let [s, s1] = phase(self.span, self.free, tau);
+        let (sin, cos) = s.simd_sin_cos();
+        let amplitude = T::of(self.span.amplitude);
+        PhaseSlopes { angle: amplitude * cos, rate: -amplitude * sin * s1 }
     }
 
     /// Angle \[rad\] and its first four derivatives by `τ`: eqs. 11–14, eq. 13 with the square it
     /// lacks, and one more.
     pub fn derivatives(&self, tau: f64) -> [T; 5] {
-        let [s, s1, s2, s3, s4] = phase(self.span, self.free, tau);
-        let (sin, cos) = s.simd_sin_cos();
-        let [three, four, six] = [3.0, 4.0, 6.0].map(T::of);
-        let square = s1 * s1;
-        let shape = [
-            sin,
-            cos * s1,
-            cos * s2 - sin * square,
-            cos * (s3 - square * s1) - sin * three * s1 * s2,
-            cos * (s4 - six * square * s2)
-                + sin * (square * square - three * s2 * s2 - four * s1 * s3),
-        ];
-        // Each derivative by τ is twice that by x.
-        let mut scale = self.span.amplitude;
-        let mut theta = shape.map(|value| {
-            let scaled = value * T::of(scale);
-            scale *= 2.0;
-            scaled
-        });
+        let amplitude = T::of(self.span.amplitude);
+        let mut theta = self.sine(tau).0.map(|value| amplitude * value);
         theta[0] += T::of(self.span.centre);
         theta
     }
+
+    /// Derivative of the `order`-th derivative of the angle by each of the joint's coefficients.
+    pub fn coefficient_slopes(&self, order: usize, tau: f64) -> impl Iterator<Item = T> {
+        let (_, cos) = self.sine::<5>(tau);
+        let amplitude = self.span.amplitude;
+        self.basis.bumps::<5>(tau).map(move |bump| {
+            let terms = (0..=order).map(|k| cos[order - k] * T::of(BINOMIAL[order][k] * bump[k]));
+            terms.fold(T::zero(), Add::add) * T::of(amplitude)
+        })
+    }
+
+    /// Sine and cosine of the phase and their first derivatives by `τ`.
+    fn sine<const N: usize>(&self, tau: f64) -> ([T; N], [T; N]) {
+        let s: [T; N] = phase(self.span, self.free, tau);
+        let (mut sin, mut cos) = ([T::zero(); N], [T::zero(); N]);
+        (sin[0], cos[0]) = s[0].simd_sin_cos();
+        for n in 1..N {
+            // Leibniz's rule for `cos s · s'` and `−sin s · s'`.
+            for k in 0..n {
+                let slope = s[n - k] * T::of(BINOMIAL[n - 1][k]);
+                sin[n] += cos[k] * slope;
+                cos[n] -= sin[k] * slope;
+            }
+        }
+        (sin, cos)
+    }
 }
 
-/// Phase and its first derivatives by `x = 2τ − 1`: the step `σ` scaled to the phase's change, and
-/// the window `(1 − x²)³` times the polynomial of the free part.
-///
-/// Written in `u = 1 − x²`, so that what vanishes at both ends vanishes exactly.
+/// Phase and its first derivatives by `τ`: the step `σ` scaled to the phase's change, and the window
+/// `(1 − x²)³` times the polynomial of the free part, `x = 2τ − 1`.
 fn phase<T: Scalar, const N: usize>(span: &Span, free: &[T], tau: f64) -> [T; N] {
     let x = 2.0 * tau - 1.0;
     let (u, xx) = (1.0 - x * x, x * x);
+    // Written in `u`, so that what vanishes at both ends vanishes exactly.
     let step = [
         0.5 + x * (15.0 - xx * (10.0 - 3.0 * xx)) / 16.0,
         15.0 / 16.0 * u * u,
@@ -120,22 +155,12 @@ fn phase<T: Scalar, const N: usize>(span: &Span, free: &[T], tau: f64) -> [T; N]
         15.0 / 16.0 * (12.0 * xx - 4.0),
         15.0 / 16.0 * (24.0 * x),
     ];
-    let window = [
-        u * u * u,
-        -6.0 * x * u * u,
-        (24.0 * xx - 6.0 * u) * u,
-        (72.0 * u - 48.0 * xx) * x,
-        72.0 * u - 288.0 * xx,
-    ];
-    let free: [T; N] = polynomial(free, T::of(x));
-    let mut phase = [T::zero(); N];
+    let mut phase = windowed(free, x);
     for n in 0..N {
         let start = if n == 0 { span.start_phase } else { 0.0 };
-        phase[n] = T::of(start + span.phase_change * step[n]);
-        // Leibniz's rule.
-        for k in 0..=n {
-            phase[n] += free[k] * T::of(BINOMIAL[n][k] * window[n - k]);
-        }
+        phase[n] += T::of(start + span.phase_change * step[n]);
+        // A derivative by τ is twice that by x.
+        phase[n] *= T::of(f64::from(1 << n));
     }
     phase
 }
@@ -149,8 +174,28 @@ const BINOMIAL: [[f64; 5]; 5] = [
     [1.0, 4.0, 6.0, 4.0, 1.0],
 ];
 
+/// The window `(1 − x²)³` times a polynomial in `x`, lowest power first, and first derivatives.
+pub(super) fn windowed<T: Scalar, const N: usize>(polynomial: &[T], x: f64) -> [T; N] {
+    let (u, xx) = (1.0 - x * x, x * x);
+    let window = [
+        u * u * u,
+        -6.0 * x * u * u,
+        (24.0 * xx - 6.0 * u) * u,
+        (72.0 * u - 48.0 * xx) * x,
+        72.0 * u - 288.0 * xx,
+    ];
+    let factor: [T; N] = taylor(polynomial, T::of(x));
+    let mut product = [T::zero(); N];
+    for n in 0..N {
+        for k in 0..=n {
+            product[n] += factor[k] * T::of(BINOMIAL[n][k] * window[n - k]);
+        }
+    }
+    product
+}
+
 /// A polynomial, lowest power first, and its first derivatives by Horner's rule.
-fn polynomial<T: Scalar, const N: usize>(coefficients: &[T], x: T) -> [T; N] {
+fn taylor<T: Scalar, const N: usize>(coefficients: &[T], x: T) -> [T; N] {
     let mut taylor = [T::zero(); N];
     for &coefficient in coefficients.iter().rev() {
         for k in (1..N).rev() {

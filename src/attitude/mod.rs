@@ -4,6 +4,10 @@
 //! alone, so everything here is in normalised time. The rate is in base axes, hence every step
 //! multiplies from the right.
 
+mod slopes;
+
+pub use slopes::{RotationSlopes, net_rotation_slopes};
+
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::momentum::base_twist;
@@ -14,6 +18,9 @@ use crate::trajectory::Path;
 
 /// `√15`, in the sixth-order step and its three Gauss–Legendre nodes.
 const SQRT_15: f64 = 3.872_983_346_207_417;
+
+/// How far the outer nodes lie from the middle of a step, in its widths.
+const OFFSET: f64 = SQRT_15 / 10.0;
 
 /// The rotations of `steps` equal steps of the path, in order; their product turns the attitude at
 /// the start into the attitude at the end.
@@ -34,8 +41,7 @@ pub fn increments<'a, T: Scalar>(
             path.angles_and_rates((i as f64 + node) * width, &mut angles, &mut rates);
             base_twist(robot, &angles, &rates).angular * T::of(width)
         };
-        let offset = SQRT_15 / 10.0;
-        so3::exp(&magnus([0.5 - offset, 0.5, 0.5 + offset].map(&mut step_rate)))
+        so3::exp(&magnus([0.5 - OFFSET, 0.5, 0.5 + OFFSET].map(&mut step_rate)))
     })
 }
 
