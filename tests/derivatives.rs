@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use driftless::optimiser::{Optimiser, Scp};
 use driftless::oracle::{Oracle, Rng, Watch};
-use driftless::problem::{Composite, Formulated, Formulation, Problem, TaskFile};
+use driftless::problem::{Composite, Formulated, Formulation, Multipliers, Problem, TaskFile};
+use nalgebra::dvector;
 
 fn paper() -> Formulated {
     let document = TaskFile::paper();
@@ -55,6 +56,51 @@ fn check(x: &[f64]) {
                 piece.place
             );
         }
+    }
+}
+
+/// The second derivative of a Lagrangian against differences of first derivatives.
+fn check_curvature(x: &[f64]) {
+    let problem = paper();
+    let here = problem.linearise(x);
+    let largest = here.pieces.iter().map(|p| p.value).fold(0.0, f64::max);
+    let active = here.pieces.iter().filter(|p| p.value > 0.85 * largest);
+    let weights = [0.7, -0.2, 0.4, 0.9, 0.1];
+    let multipliers = Multipliers {
+        residual: dvector![0.8, -1.1, 0.5],
+        pieces: active.zip(weights.into_iter().cycle()).map(|(p, w)| (p.place, w)).collect(),
+    };
+    let gradient = |j: usize, step: f64| {
+        let mut x = x.to_vec();
+        x[j] += step;
+        let there = problem.linearise(&x);
+        let mut sum = there.residual_jacobian.tr_mul(&multipliers.residual);
+        for (place, weight) in &multipliers.pieces {
+            let same = there.pieces.iter().find(|p| {
+                p.place.joint == place.joint
+                    && p.place.order == place.order
+                    && (p.place.tau - place.tau).abs() < 0.05
+            });
+            sum += &same.unwrap().gradient * *weight;
+        }
+        sum
+    };
+    let found = problem.curvature(x, &multipliers);
+    for j in 0..x.len() {
+        for k in 0..x.len() {
+            let expected = difference(|step| gradient(j, step)[k]);
+            let miss = (found[(k, j)] - expected).abs();
+            assert!(miss < 1e-3 * found.amax(), "{k} {j}: {} {expected}", found[(k, j)]);
+        }
+    }
+}
+
+#[test]
+fn curvature_agrees_with_differences() {
+    let mut rng = Rng::new(5);
+    for _ in 0..3 {
+        let x: Vec<f64> = paper().bounds().iter().map(|[l, u]| 0.4 * rng.uniform(l, u)).collect();
+        check_curvature(&x);
     }
 }
 

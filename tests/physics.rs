@@ -157,7 +157,7 @@ proptest! {
         let problem = Reorientation::new(task.clone(), terms, Accuracy::FINE);
         let path = problem.family().path::<f64>(&unit[..problem.family().dimension()]);
         for (i, joint) in path.joints().enumerate() {
-            let (start, end) = (joint.derivatives(0.0), joint.derivatives(1.0));
+            let (start, end) = (joint.derivatives::<5>(0.0), joint.derivatives::<5>(1.0));
             prop_assert!((start[0] - task.start.joints[i]).abs() < 1e-10);
             prop_assert!((end[0] - task.goal.joints[i]).abs() < 1e-10);
             for k in [1, 2] {
@@ -177,8 +177,8 @@ proptest! {
         let path = problem.family().path(&coefficients);
         let h = 1e-3;
         for joint in path.joints() {
-            let exact = joint.derivatives(tau);
-            let at = |step: f64| joint.derivatives(tau + step);
+            let exact = joint.derivatives::<5>(tau);
+            let at = |step: f64| joint.derivatives::<5>(tau + step);
             let (p1, m1, p2, m2) = (at(h), at(-h), at(2.0 * h), at(-2.0 * h));
             for k in 1..5 {
                 let difference =
@@ -199,14 +199,14 @@ proptest! {
         let looks = [(search, 1e-7), (Accuracy::FINE.peak_intervals, 1e-12)];
         for (joint, i) in path.joints().zip(0..) {
             let samples: Vec<_> =
-                (0..=20_000).map(|i| joint.derivatives(f64::from(i) / 20_000.0)).collect();
+                (0..=20_000).map(|i| joint.derivatives::<5>(f64::from(i) / 20_000.0)).collect();
             for k in 0..3 {
                 let dense = samples.iter().map(|s| s[k + 1].abs()).fold(0.0, f64::max);
                 for (intervals, missed) in looks {
                     let peak = Peaks::of(&path, intervals).0[i][k];
                     let error = (peak.value - dense) / dense;
                     prop_assert!((-missed..1e-6).contains(&error), "order {}: {error:e}", k + 1);
-                    let there = joint.derivatives(peak.tau)[k + 1].abs();
+                    let there = joint.derivatives::<5>(peak.tau)[k + 1].abs();
                     prop_assert!((there - peak.value).abs() < 1e-12 * dense);
                 }
             }

@@ -4,8 +4,11 @@
 //! alone, so everything here is in normalised time. The rate is in base axes, hence every step
 //! multiplies from the right.
 
+mod curvature;
+mod node;
 mod slopes;
 
+pub use curvature::{RotationCurvature, net_rotation_curvature};
 pub use slopes::{RotationSlopes, net_rotation_slopes};
 
 use nalgebra::{UnitQuaternion, Vector3};

@@ -42,9 +42,11 @@ impl Subproblem<'_> {
         let (n, m) = (self.lower.len(), self.residual.len());
         let (duration, norm) = (n, n + 1);
         let mut rows = Rows::default();
-        for (piece, value) in self.parts.pieces.iter().zip(self.values) {
-            let slopes = piece.gradient.iter().enumerate().map(|(j, g)| (j, *g));
-            rows.push(slopes.chain([(duration, -1.0)]), -value);
+        let pieces = self.in_reach();
+        for &p in &pieces {
+            let gradient = self.parts.pieces[p].gradient.iter().copied();
+            let slopes = gradient.enumerate().filter(|(_, slope)| *slope != 0.0);
+            rows.push(slopes.chain([(duration, -1.0)]), -self.values[p]);
         }
         for j in 0..n {
             rows.push([(j, 1.0)], self.upper[j]);
@@ -68,13 +70,31 @@ impl Subproblem<'_> {
         if !matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
             return None;
         }
-        let pieces = self.parts.pieces.len();
+        let mut lambda = DVector::zeros(self.values.len());
+        for (&p, multiplier) in pieces.iter().zip(&solution.z) {
+            lambda[p] = *multiplier;
+        }
         Some(Step {
             d: DVector::from_column_slice(&solution.x[..n]),
             cost: solution.obj_val,
-            lambda: DVector::from_column_slice(&solution.z[..pieces]),
+            lambda,
             nu: -DVector::from_column_slice(&solution.z[linear + 1..]),
         })
+    }
+
+    /// The pieces that can be the largest somewhere within the bounds.
+    fn in_reach(&self) -> Vec<usize> {
+        let range = |p: usize| {
+            let slopes =
+                self.parts.pieces[p].gradient.iter().zip(self.lower.iter().zip(self.upper));
+            slopes.fold([self.values[p]; 2], |[low, high], (slope, (lower, upper))| {
+                let ends = [slope * lower, slope * upper];
+                [low + ends[0].min(ends[1]), high + ends[0].max(ends[1])]
+            })
+        };
+        let ranges: Vec<_> = (0..self.values.len()).map(range).collect();
+        let floor = ranges.iter().map(|[low, _]| *low).fold(f64::NEG_INFINITY, f64::max);
+        (0..ranges.len()).filter(|&p| ranges[p][1] >= floor).collect()
     }
 }
 

@@ -3,12 +3,16 @@
 //! Each step linearises the smooth parts and leaves the norm and the maximum as they are: a conic
 //! subproblem, solved by Clarabel, within a trust region (Fletcher 1982, doi:10.1007/BFb0120960, with
 //! his second-order correction). Since the duration is the longest that any limit asks for, every
-//! start is within the limits and stays there. Symmetric rank-one updates (Conn, Gould and Toint 1991,
-//! doi:10.1007/BF01594934), with negative eigenvalues taken out so that the subproblem stays convex,
-//! hold the curvature of the Lagrangian; without it steps along the active limits would be small.
+//! start is within the limits and stays there. The Lagrangian's second derivative along the active
+//! parts, with what is negative taken out so that the subproblem stays convex, makes the last steps
+//! those of Newton's method.
 //!
-//! A start has been followed to its end when a step promises next to nothing and the Lagrangian's
-//! slope, first-order optimality, is next to nothing too.
+//! The norm is an exact penalty: as soon as `a` exceeds the multiplier of `r = 0` the minimum no longer
+//! depends on it. The task's weight is many times that, which makes a search hug `r = 0`, slow and
+//! soon in a poor valley; so the search starts with a smaller one and raises it only as it must.
+//!
+//! A start has been followed to its end when, with the task's own weight, a step promises next to
+//! nothing and the Lagrangian's slope, first-order optimality, is next to nothing too.
 
 use std::num::NonZeroUsize;
 
@@ -20,7 +24,7 @@ use super::conic::{Step, Subproblem};
 use super::{Optimiser, uniform_point};
 use crate::input::{count, fraction, positive};
 use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Linearisation, Piece};
+use crate::problem::{Linearisation, Multipliers, Piece};
 
 /// Settings of sequential convex programming.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -35,6 +39,9 @@ pub struct Scp {
     /// first radius of the trust region, as a fraction of the box's half-width
     #[serde(deserialize_with = "fraction")]
     pub radius: f64,
+    /// first weight of the base's error, in costs of the start's duration; it grows to the task's own
+    #[serde(deserialize_with = "positive")]
+    pub first_weight: f64,
     /// a start may end when a step promises to lower J by less than this share of it
     #[serde(deserialize_with = "positive")]
     pub tolerance: f64,
@@ -45,8 +52,8 @@ pub struct Scp {
 
 impl Default for Scp {
     fn default() -> Self {
-        let [starts, steps] = [30, 200].map(|n| NonZeroUsize::MIN.saturating_add(n - 1));
-        Self { starts, steps, radius: 0.3, tolerance: 1e-9, stationarity: 1e-5 }
+        let [starts, steps] = [100, 200].map(|n| NonZeroUsize::MIN.saturating_add(n - 1));
+        Self { starts, steps, radius: 0.1, first_weight: 4.0, tolerance: 1e-9, stationarity: 1e-5 }
     }
 }
 
@@ -65,10 +72,22 @@ impl Optimiser for Scp {
     fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
         let mut x = vec![0.0; oracle.bounds().len()];
         for _ in 0..self.starts.get() {
-            uniform_point(oracle, rng, &mut x);
+            draw(oracle, rng, &mut x);
             self.follow(oracle, &x)?;
         }
         Ok(())
+    }
+}
+
+/// Draws a start uniformly from the box shrunk about its middle, by the square of a number drawn
+/// uniformly from the unit interval: most tasks are solved best from near the middle, some only from
+/// far out.
+fn draw(oracle: &Oracle<'_>, rng: &mut Rng, x: &mut [f64]) {
+    let shrink = rng.unit().powi(2);
+    uniform_point(oracle, rng, x);
+    for (x, [lower, upper]) in x.iter_mut().zip(oracle.bounds().iter()) {
+        let middle = f64::midpoint(lower, upper);
+        *x = middle + shrink * (*x - middle);
     }
 }
 
@@ -85,34 +104,44 @@ impl Scp {
     /// Follows one start to a local optimum.
     pub fn follow(&self, oracle: &mut Oracle<'_>, start: &[f64]) -> Result<Ending, Stop> {
         let mut here = Iterate::at(oracle, DVector::from_column_slice(start))?;
-        let mut curvature = Curvature::none(start.len());
+        let full_weight = here.parts.norm_weight;
+        here = here.weighed(0.0);
+        let first_weight = self.first_weight * here.cost();
+        here = here.weighed(first_weight.min(full_weight));
+        let mut curvature = DMatrix::zeros(start.len(), start.len());
         let mut radius = self.radius;
         for _ in 0..self.steps.get() {
             if radius < SMALLEST {
                 return Ok(Ending::Stalled);
             }
             let region = Region::around(oracle, &here.x, radius);
-            let Some(step) =
-                region.solve(oracle, &here.parts, &Values::of(&here.parts), &curvature)
-            else {
+            let model = Model { region: &region, parts: &here.parts, curvature: &curvature };
+            let Some(step) = model.minimise(oracle, &Values::of(&here.parts)) else {
                 radius /= 4.0;
                 continue;
             };
-            let promised = here.cost - step.cost;
-            if promised <= self.tolerance * here.cost.abs() {
+            let promised = here.cost() - step.cost;
+            if promised <= self.tolerance * here.cost() {
                 // What the subproblem's curvature holds back is the Lagrangian's slope.
-                let slope = (&curvature.0 * &step.d).amax();
-                if slope <= self.stationarity * here.cost.abs() {
+                let slope = (&curvature * &step.d).amax();
+                if slope > self.stationarity * here.cost() {
+                    curvature.fill(0.0);
+                } else if here.parts.norm_weight < full_weight {
+                    // A shorter multiplier stays one whatever the weight.
+                    let exact = step.nu.norm() < (1.0 - ACTIVE) * here.parts.norm_weight;
+                    let weight = if exact { full_weight } else { GROWTH * here.parts.norm_weight };
+                    here = here.weighed(weight.min(full_weight));
+                    radius = radius.max(self.radius);
+                } else {
                     return Ok(Ending::Optimal);
                 }
-                curvature.0 *= 0.1;
                 continue;
             }
-            let (there, step) = here.advance(oracle, &region, step, promised, &curvature)?;
-            let kept = (here.cost - there.cost) / promised;
+            let (there, step) = here.advance(oracle, &model, step, promised)?;
+            let kept = (here.cost() - there.cost()) / promised;
             let reach = region.reach(&step.d);
             if kept >= TAKE {
-                curvature.update(&here.parts, &there.parts, &step);
+                curvature = there.curvature(oracle, &here, &step)?;
                 here = there;
             }
             radius = match kept {
@@ -130,15 +159,24 @@ impl Scp {
 /// A point with all that is known there.
 struct Iterate {
     x: DVector<f64>,
-    cost: f64,
+    /// With the weight of the norm that the search works with.
     parts: Linearisation,
 }
 
 impl Iterate {
     fn at(oracle: &mut Oracle<'_>, x: DVector<f64>) -> Result<Self, Stop> {
-        let cost = oracle.evaluate(x.as_slice())?.cost;
-        let parts = oracle.linearise(x.as_slice())?;
-        Ok(Self { x, cost, parts })
+        Ok(Self { parts: oracle.linearise(x.as_slice())?, x })
+    }
+
+    /// Makes the norm weigh so much.
+    fn weighed(mut self, norm_weight: f64) -> Self {
+        self.parts.norm_weight = norm_weight;
+        self
+    }
+
+    /// The cost in the search's own weights.
+    fn cost(&self) -> f64 {
+        self.parts.cost()
     }
 
     /// Makes a step; where it keeps little of what it promised, the parts bend away from their
@@ -146,25 +184,92 @@ impl Iterate {
     fn advance(
         &self,
         oracle: &mut Oracle<'_>,
-        region: &Region,
+        model: &Model<'_>,
         step: Step,
         promised: f64,
-        curvature: &Curvature,
     ) -> Result<(Self, Step), Stop> {
-        let there = Self::at(oracle, &self.x + &step.d)?;
-        if self.cost - there.cost >= TAKE * promised {
+        let weight = self.parts.norm_weight;
+        let there = Self::at(oracle, &self.x + &step.d)?.weighed(weight);
+        if self.cost() - there.cost() >= TAKE * promised {
             return Ok((there, step));
         }
         let values = corrected(&self.parts, &there.parts, &step.d);
-        let Some(second) = region.solve(oracle, &self.parts, &values, curvature) else {
+        let Some(second) = model.minimise(oracle, &values) else {
             return Ok((there, step));
         };
-        let x = &self.x + &second.d;
-        if oracle.evaluate(x.as_slice())?.cost < there.cost {
-            Ok((Self::at(oracle, x)?, second))
-        } else {
-            Ok((there, step))
+        let corrected = Self::at(oracle, &self.x + &second.d)?.weighed(weight);
+        Ok(if corrected.cost() < there.cost() { (corrected, second) } else { (there, step) })
+    }
+
+    /// The Lagrangian's second derivative here, with the multipliers of the step that led here.
+    ///
+    /// What counts is how it bends along the parts that are level: across them the subproblem's own
+    /// cone and maximum hold the step.
+    fn curvature(
+        &self,
+        oracle: &mut Oracle<'_>,
+        before: &Self,
+        step: &Step,
+    ) -> Result<DMatrix<f64>, Stop> {
+        let held = before.parts.pieces.iter().zip(step.lambda.iter());
+        let held: Vec<_> = held
+            .filter(|(_, lambda)| **lambda > ACTIVE * before.parts.max_weight)
+            .filter_map(|(piece, lambda)| Some((continued(piece, &self.parts)?, *lambda)))
+            .collect();
+        let multipliers = Multipliers {
+            residual: step.nu.clone(),
+            pieces: held.iter().map(|(piece, lambda)| (piece.place, *lambda)).collect(),
+        };
+        let mut level: Vec<DVector<f64>> = Vec::new();
+        if step.nu.norm() < (1.0 - ACTIVE) * self.parts.norm_weight {
+            level.extend(self.parts.residual_jacobian.row_iter().map(|row| row.transpose()));
         }
+        level.extend(held.windows(2).map(|pair| &pair[1].0.gradient - &pair[0].0.gradient));
+        let curvature = oracle.curvature(self.x.as_slice(), &multipliers)?;
+        Ok(convex_along(&curvature, &level))
+    }
+}
+
+/// By how much the weight of the norm grows at a time.
+const GROWTH: f64 = 10.0;
+
+/// Share of its largest value above which a multiplier counts.
+const ACTIVE: f64 = 1e-5;
+
+/// The part of a symmetric matrix within the space where all `level` vanish, less what is negative
+/// there.
+fn convex_along(matrix: &DMatrix<f64>, level: &[DVector<f64>]) -> DMatrix<f64> {
+    let mut within = DMatrix::identity(matrix.nrows(), matrix.ncols());
+    let unit: Vec<_> = level.iter().filter_map(|v| v.try_normalize(0.0)).collect();
+    if !unit.is_empty() {
+        let svd = DMatrix::from_columns(&unit).svd(true, false);
+        for (direction, size) in
+            svd.u.iter().flat_map(|u| u.column_iter()).zip(&svd.singular_values)
+        {
+            if *size > 1e-6 {
+                within -= direction * direction.transpose();
+            }
+        }
+    }
+    let eigen = (&within * matrix * &within).symmetric_eigen();
+    let kept = DMatrix::from_diagonal(&eigen.eigenvalues.map(|value| value.max(0.0)));
+    &eigen.eigenvectors * kept * eigen.eigenvectors.transpose()
+}
+
+/// The subproblem around a point: parts made linear, within a region.
+struct Model<'a> {
+    region: &'a Region,
+    parts: &'a Linearisation,
+    curvature: &'a DMatrix<f64>,
+}
+
+impl Model<'_> {
+    /// Its minimum with these values of `r` and `h`, the linearisation's or corrected ones.
+    fn minimise(&self, oracle: &mut Oracle<'_>, values: &Values) -> Option<Step> {
+        let Values { residual, pieces } = values;
+        let Self { region: Region { lower, upper, .. }, parts, curvature } = self;
+        let problem = Subproblem { parts, residual, values: pieces, curvature, lower, upper };
+        oracle.conic(|| problem.solve())
     }
 }
 
@@ -185,21 +290,6 @@ impl Region {
             .map(|(([l, u], x), e)| ((l - x).max(-e).min(0.0), (u - x).min(*e).max(0.0)))
             .unzip();
         Self { lower, upper, extent }
-    }
-
-    /// Solves the subproblem with these values of `r` and `h`, the linearisation's or corrected ones.
-    fn solve(
-        &self,
-        oracle: &mut Oracle<'_>,
-        parts: &Linearisation,
-        values: &Values,
-        curvature: &Curvature,
-    ) -> Option<Step> {
-        let Values { residual, pieces } = values;
-        let Self { lower, upper, .. } = self;
-        let curvature = &curvature.0;
-        let problem = Subproblem { parts, residual, values: pieces, curvature, lower, upper };
-        oracle.conic(|| problem.solve())
     }
 
     /// How far towards the region's wall a step goes; 1 is on it.
@@ -239,43 +329,4 @@ fn corrected(here: &Linearisation, there: &Linearisation, d: &DVector<f64>) -> V
         found.unwrap_or(piece.value)
     };
     Values { residual, pieces: here.pieces.iter().map(value).collect() }
-}
-
-/// A positive semidefinite approximation of the Lagrangian's second derivative.
-struct Curvature(DMatrix<f64>);
-
-impl Curvature {
-    fn none(variables: usize) -> Self {
-        Self(DMatrix::zeros(variables, variables))
-    }
-
-    fn is_none(&self) -> bool {
-        self.0.iter().all(|&b| b == 0.0)
-    }
-
-    /// Takes in the change of the Lagrangian's gradient along a step.
-    fn update(&mut self, here: &Linearisation, there: &Linearisation, step: &Step) {
-        let s = &step.d;
-        let mut y = (&there.residual_jacobian - &here.residual_jacobian).tr_mul(&step.nu);
-        for (piece, lambda) in here.pieces.iter().zip(step.lambda.iter()) {
-            if let Some(found) = continued(piece, there) {
-                y += (&found.gradient - &piece.gradient) * *lambda;
-            }
-        }
-        if self.is_none() {
-            self.0.fill_diagonal(s.dot(&y).abs() / s.dot(s));
-        }
-        let miss = y - &self.0 * s;
-        let slope = miss.dot(s);
-        if slope.abs() > 1e-8 * miss.norm() * s.norm() {
-            self.0 += &miss * miss.transpose() / slope;
-        }
-        if !self.0.iter().all(|b| b.is_finite()) {
-            *self = Self::none(s.len());
-            return;
-        }
-        let eigen = self.0.clone().symmetric_eigen();
-        let kept = DMatrix::from_diagonal(&eigen.eigenvalues.map(|value| value.max(0.0)));
-        self.0 = &eigen.eigenvectors * kept * eigen.eigenvectors.transpose();
-    }
 }

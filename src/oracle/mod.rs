@@ -5,7 +5,9 @@ mod rng;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::problem::{Bounds, Evaluation, Linearisation, Points, Problem};
+use nalgebra::DMatrix;
+
+use crate::problem::{Bounds, Evaluation, Linearisation, Multipliers, Points, Problem};
 pub use rng::Rng;
 
 /// Why an optimiser has to stop.
@@ -81,6 +83,7 @@ pub struct Oracle<'a> {
     in_problem: Duration,
     evaluations: u64,
     linearisations: u64,
+    curvatures: u64,
     conic_solves: u64,
     conic_failures: u64,
     best: Option<Best>,
@@ -98,6 +101,7 @@ impl<'a> Oracle<'a> {
             in_problem: Duration::ZERO,
             evaluations: 0,
             linearisations: 0,
+            curvatures: 0,
             conic_solves: 0,
             conic_failures: 0,
             best: None,
@@ -123,6 +127,11 @@ impl<'a> Oracle<'a> {
     /// Linearisations made.
     pub fn linearisations(&self) -> u64 {
         self.linearisations
+    }
+
+    /// Second derivatives of Lagrangians found.
+    pub fn curvatures(&self) -> u64 {
+        self.curvatures
     }
 
     /// Conic subproblems solved or given up.
@@ -173,7 +182,7 @@ impl<'a> Oracle<'a> {
         if cut.is_some() { Err(Stop::BudgetSpent) } else { Ok(()) }
     }
 
-    /// Values and first derivatives of the problem's parts at a point.
+    /// Evaluates one point together with its first derivatives: one evaluation and one linearisation.
     pub fn linearise(&mut self, x: &[f64]) -> Result<Linearisation, Stop> {
         self.check()?;
         let composite = self.problem.composite().ok_or(Stop::NoDerivatives)?;
@@ -181,7 +190,24 @@ impl<'a> Oracle<'a> {
         let linearisation = composite.linearise(x);
         self.in_problem += clock.elapsed();
         self.linearisations += 1;
+        self.record(x, Evaluation { cost: linearisation.cost(), violation: 0.0 });
+        self.watch.add_evaluations(1);
         Ok(linearisation)
+    }
+
+    /// The second derivative of a Lagrangian at a point.
+    pub fn curvature(
+        &mut self,
+        x: &[f64],
+        multipliers: &Multipliers,
+    ) -> Result<DMatrix<f64>, Stop> {
+        self.check()?;
+        let composite = self.problem.composite().ok_or(Stop::NoDerivatives)?;
+        let clock = Instant::now();
+        let curvature = composite.curvature(x, multipliers);
+        self.in_problem += clock.elapsed();
+        self.curvatures += 1;
+        Ok(curvature)
     }
 
     /// Counts the conic subproblem that `solve` solves, or fails to.

@@ -1,9 +1,9 @@
 //! First derivatives of the time-free cost, for optimisers that use them.
 
-use nalgebra::{DMatrix, DVector, Matrix3};
+use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 
 use super::{Formulated, Problem, Reorientation};
-use crate::attitude::net_rotation_slopes;
+use crate::attitude::{net_rotation, net_rotation_curvature, net_rotation_slopes};
 use crate::task::Task;
 use crate::trajectory::{LocalPeak, Path, Peaks, duration_asked};
 
@@ -11,6 +11,18 @@ use crate::trajectory::{LocalPeak, Path, Peaks, duration_asked};
 pub trait Composite: Problem {
     /// Values and first derivatives of all parts that matter near `x`.
     fn linearise(&self, x: &[f64]) -> Linearisation;
+
+    /// Second derivative of `ν · r(x) + Σ λ_p h_p(x)`, to a few digits.
+    fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> DMatrix<f64>;
+}
+
+/// What the parts weigh in a Lagrangian.
+#[derive(Debug, Clone)]
+pub struct Multipliers {
+    /// `ν`, of length `a` at most.
+    pub residual: DVector<f64>,
+    /// Each `λ_p` that is not zero.
+    pub pieces: Vec<(LocalPeak, f64)>,
 }
 
 /// Values and first derivatives at a point.
@@ -26,6 +38,14 @@ pub struct Linearisation {
     pub max_weight: f64,
     /// The `h_p` that are largest or not far from it.
     pub pieces: Vec<Piece>,
+}
+
+impl Linearisation {
+    /// `J`.
+    pub fn cost(&self) -> f64 {
+        let longest = self.pieces.iter().map(|piece| piece.value).fold(0.0, f64::max);
+        self.norm_weight * self.residual.norm() + self.max_weight * longest
+    }
 }
 
 /// One `h_p`.
@@ -63,15 +83,20 @@ impl Reorientation {
 
     /// The base's error and its derivatives.
     fn base_error_slopes(&self, path: &Path<'_, f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let Task { robot, start, goal, .. } = &**self.task();
-        let net = net_rotation_slopes(robot, path, self.accuracy().attitude_steps);
-        let error = goal.base.inverse() * start.base * net.rotation;
-        let residual = error.imag();
-        // q ⊗ (0, ½ e) has the vector part ½ (q_w e + q_v × e).
-        let by_turn = (Matrix3::from_diagonal_element(error.w) + residual.cross_matrix()) / 2.0;
+        let net = net_rotation_slopes(&self.task().robot, path, self.accuracy().attitude_steps);
+        let (error, by_turn) = self.turned_error(net.rotation);
         let jacobian = by_turn * net.by_coefficient;
         let jacobian = DMatrix::from_column_slice(3, jacobian.ncols(), jacobian.as_slice());
-        (DVector::from_column_slice(residual.as_slice()), jacobian)
+        (DVector::from_column_slice(error.imag().as_slice()), jacobian)
+    }
+
+    /// The base's error, and how its vector part follows a turn of the base's end in base axes.
+    fn turned_error(&self, net: UnitQuaternion<f64>) -> (UnitQuaternion<f64>, Matrix3<f64>) {
+        let Task { start, goal, .. } = &**self.task();
+        let error = goal.base.inverse() * start.base * net;
+        // q ⊗ (0, ½ v) has the vector part ½ (q_w v + q_v × v).
+        let by_turn = (Matrix3::from_diagonal_element(error.w) + error.imag().cross_matrix()) / 2.0;
+        (error, by_turn)
     }
 
     /// The duration that one limit asks for at one place of the path, and its derivatives.
@@ -79,7 +104,7 @@ impl Reorientation {
         let LocalPeak { joint: index, order, tau } = place;
         let joint = path.joint(index);
         let limit = self.task().limits.0[index][order - 1];
-        let derivative = joint.derivatives(tau)[order];
+        let derivative = joint.derivatives::<4>(tau)[order];
         let value = duration_asked(derivative.abs() / limit, order);
         let by_derivative = value / (order as f64 * derivative);
         let terms = path.basis().terms();
@@ -91,8 +116,67 @@ impl Reorientation {
     }
 }
 
+/// Midpoint steps along the path for the curvature.
+const CURVATURE_STEPS: usize = 12;
+
+/// Second derivatives.
+impl Reorientation {
+    pub(super) fn curvature(
+        &self,
+        coefficients: &[f64],
+        multipliers: &Multipliers,
+    ) -> DMatrix<f64> {
+        let path = self.family().path(coefficients);
+        let mut curvature = self.base_error_curvature(&path, &multipliers.residual);
+        for (place, lambda) in &multipliers.pieces {
+            let terms = path.basis().terms();
+            let first = place.joint * terms;
+            let block = self.piece_curvature(&path, place) * *lambda;
+            let mut own = curvature.view_mut((first, first), (terms, terms));
+            own += block;
+        }
+        curvature
+    }
+
+    fn base_error_curvature(&self, path: &Path<'_, f64>, nu: &DVector<f64>) -> DMatrix<f64> {
+        let robot = &self.task().robot;
+        let nu = Vector3::from_column_slice(nu.as_slice());
+        let (error, by_turn) = self.turned_error(net_rotation(robot, path, CURVATURE_STEPS));
+        let turned = net_rotation_curvature(robot, path, CURVATURE_STEPS, &by_turn.tr_mul(&nu));
+        // The vector part of q ⊗ exp(½ v) is the line along v less |v|²/8 of itself.
+        let shrink = -0.25 * nu.dot(&error.imag());
+        turned.curvature + turned.by_coefficient.tr_mul(&turned.by_coefficient) * shrink
+    }
+
+    /// Second derivatives of the duration that one limit asks for, by its joint's coefficients.
+    fn piece_curvature(&self, path: &Path<'_, f64>, place: &LocalPeak) -> DMatrix<f64> {
+        let LocalPeak { joint: index, order, tau } = *place;
+        let joint = path.joint(index);
+        let limit = self.task().limits.0[index][order - 1];
+        let derivatives = joint.derivatives::<6>(tau);
+        let v = derivatives[order];
+        let duration = duration_asked(v.abs() / limit, order);
+        let slopes = |order| {
+            DVector::from_iterator(path.basis().terms(), joint.coefficient_slopes(order, tau))
+        };
+        let (slope, drift) = (slopes(order), slopes(order + 1));
+        let bend = |k, l| joint.coefficient_curvature(order, tau, [k, l]);
+        let mut second = DMatrix::from_fn(slope.len(), slope.len(), bend);
+        if tau > 0.0 && tau < 1.0 {
+            // The peak moves along the path.
+            second -= &drift * drift.transpose() / derivatives[order + 2];
+        }
+        let power = 1.0 / order as f64;
+        (second / v + &slope * slope.transpose() * ((power - 1.0) / (v * v))) * (power * duration)
+    }
+}
+
 impl Composite for Formulated {
     fn linearise(&self, x: &[f64]) -> Linearisation {
         self.task().linearise(x)
+    }
+
+    fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> DMatrix<f64> {
+        self.task().curvature(x, multipliers)
     }
 }

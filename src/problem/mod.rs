@@ -7,7 +7,7 @@ mod published;
 mod reorientation;
 mod settings;
 
-pub use composite::{Composite, Linearisation, Piece};
+pub use composite::{Composite, Linearisation, Multipliers, Piece};
 pub use formulation::{Formulated, Formulation};
 pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};

@@ -38,7 +38,7 @@ impl Motion {
         let taus: Vec<f64> = (0..=intervals).map(|i| i as f64 / intervals as f64).collect();
         let joints = task.robot.joints.iter().zip(path.joints()).map(|(joint, path)| {
             let derivatives = taus.iter().map(|&tau| {
-                let values = path.derivatives(tau);
+                let values = path.derivatives::<4>(tau);
                 std::array::from_fn(|k| values[k] / duration.powi(k as i32))
             });
             JointMotion { name: joint.name.clone(), derivatives: derivatives.collect() }

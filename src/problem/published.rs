@@ -240,7 +240,7 @@ fn sampled_peaks(path: &Path<'_, f64>, duration: f64) -> Peaks {
     let peaks = path.joints().map(|joint| {
         (0..=last).fold([Peak::default(); 3], |peak, i| {
             let tau = i as f64 * step / duration;
-            let sample = joint.derivatives(tau);
+            let sample = joint.derivatives::<4>(tau);
             std::array::from_fn(|k| peak[k].or(Peak { value: sample[k + 1].abs(), tau }))
         })
     });

@@ -39,13 +39,16 @@ impl Basis {
         &self.polynomials
     }
 
-    /// Every bump and its first derivatives by `τ`.
+    /// A bump and its first derivatives by `τ`, at most five.
+    pub fn bump<const N: usize>(&self, k: usize, tau: f64) -> [f64; N] {
+        let mut bump = windowed(&self.polynomials[k], 2.0 * tau - 1.0);
+        bump.iter_mut().enumerate().for_each(|(n, value)| *value *= f64::from(1 << n));
+        bump
+    }
+
+    /// All bumps, each with its first derivatives by `τ`.
     pub fn bumps<const N: usize>(&self, tau: f64) -> impl Iterator<Item = [f64; N]> {
-        self.polynomials.iter().map(move |polynomial| {
-            let mut bump = windowed(polynomial, 2.0 * tau - 1.0);
-            bump.iter_mut().enumerate().for_each(|(n, value)| *value *= f64::from(1 << n));
-            bump
-        })
+        (0..self.terms()).map(move |k| self.bump(k, tau))
     }
 
     /// One joint's `A_6, A_7, …` from its coefficients.

@@ -11,5 +11,5 @@ mod peaks;
 
 pub use basis::Basis;
 pub use family::Family;
-pub use path::{JointPath, Path, PhaseSlopes};
+pub use path::{AtPhase, JointPath, Path};
 pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked};

@@ -1,7 +1,5 @@
 //! One path: every joint's angle and derivatives at any normalised time.
 
-use std::ops::Add;
-
 use super::basis::Basis;
 use crate::scalar::Scalar;
 
@@ -67,6 +65,11 @@ impl<'a, T: Scalar> Path<'a, T> {
         JointPath { span: &self.spans[index], basis: self.basis, free }
     }
 
+    /// Free coefficients in all.
+    pub fn dimension(&self) -> usize {
+        self.free.len()
+    }
+
     /// The bumps that a path's coefficients multiply.
     pub fn basis(&self) -> &'a Basis {
         self.basis
@@ -75,40 +78,48 @@ impl<'a, T: Scalar> Path<'a, T> {
     /// Writes every joint's angle \[rad\] and its derivative by `τ` \[rad\].
     pub fn angles_and_rates(&self, tau: f64, angles: &mut [T], rates: &mut [T]) {
         for ((angle, rate), joint) in angles.iter_mut().zip(rates).zip(self.joints()) {
-            (*angle, *rate) = joint.angle_and_rate(tau);
+            let at = joint.at_phase(joint.phase(tau));
+            (*angle, *rate) = (at.angle, at.rate);
         }
     }
 }
 
-/// How a joint's angle and rate follow its phase.
+/// A joint's angle and rate at a phase.
 #[derive(Debug, Clone, Copy)]
-pub struct PhaseSlopes<T> {
-    /// `∂θ/∂s`.
+pub struct AtPhase<T> {
+    /// `θ` \[rad\].
     pub angle: T,
-    /// `∂θ'/∂s`.
+    /// `θ'`, by `τ` \[rad\].
     pub rate: T,
+    /// `∂θ/∂s`, which is `∂θ'/∂s'` too.
+    pub angle_slope: T,
+    /// `∂θ'/∂s`.
+    pub rate_slope: T,
 }
 
 impl<T: Scalar> JointPath<'_, T> {
-    /// Angle \[rad\] and its derivative by `τ` (eqs. 11 and 12).
-    pub fn angle_and_rate(&self, tau: f64) -> (T, T) {
-        let [s, s1] = phase(self.span, self.free, tau);
-        let (sin, cos) = s.simd_sin_cos();
-        let amplitude = T::of(self.span.amplitude);
-        (amplitude * sin + T::of(self.span.centre), amplitude * cos * s1)
+    /// Phase and its derivative by `τ` (eq. 24).
+    pub fn phase(&self, tau: f64) -> [T; 2] {
+        phase(self.span, self.free, tau)
     }
 
-    /// How both follow the phase; `∂θ'/∂s'` is `∂θ/∂s`.
-    pub fn phase_slopes(&self, tau: f64) -> PhaseSlopes<T> {
-        let [s, s1] = phase(self.span, self.free, tau);
+    /// Angle \[rad\] and its derivative by `τ` at a phase with its derivative (eqs. 11 and 12), and
+    /// how they follow the phase.
+    pub fn at_phase(&self, [s, s1]: [T; 2]) -> AtPhase<T> {
         let (sin, cos) = s.simd_sin_cos();
         let amplitude = T::of(self.span.amplitude);
-        PhaseSlopes { angle: amplitude * cos, rate: -amplitude * sin * s1 }
+        let angle_slope = amplitude * cos;
+        AtPhase {
+            angle: amplitude * sin + T::of(self.span.centre),
+            rate: angle_slope * s1,
+            angle_slope,
+            rate_slope: -amplitude * sin * s1,
+        }
     }
 
-    /// Angle \[rad\] and its first four derivatives by `τ`: eqs. 11–14, eq. 13 with the square it
-    /// lacks, and one more.
-    pub fn derivatives(&self, tau: f64) -> [T; 5] {
+    /// Angle \[rad\] and its first derivatives by `τ`, at most five: eqs. 11–14, eq. 13 with the square
+    /// it lacks, and two more.
+    pub fn derivatives<const N: usize>(&self, tau: f64) -> [T; N] {
         let amplitude = T::of(self.span.amplitude);
         let mut theta = self.sine(tau).0.map(|value| amplitude * value);
         theta[0] += T::of(self.span.centre);
@@ -117,12 +128,18 @@ impl<T: Scalar> JointPath<'_, T> {
 
     /// Derivative of the `order`-th derivative of the angle by each of the joint's coefficients.
     pub fn coefficient_slopes(&self, order: usize, tau: f64) -> impl Iterator<Item = T> {
-        let (_, cos) = self.sine::<5>(tau);
-        let amplitude = self.span.amplitude;
-        self.basis.bumps::<5>(tau).map(move |bump| {
-            let terms = (0..=order).map(|k| cos[order - k] * T::of(BINOMIAL[order][k] * bump[k]));
-            terms.fold(T::zero(), Add::add) * T::of(amplitude)
-        })
+        let (_, cos) = self.sine::<ORDERS>(tau);
+        let amplitude = T::of(self.span.amplitude);
+        let bumps = self.basis.bumps::<ORDERS>(tau);
+        bumps.map(move |bump| amplitude * leibniz(order, &cos, &bump.map(T::of)))
+    }
+
+    /// Second derivative of the `order`-th derivative of the angle by two of the joint's coefficients.
+    pub fn coefficient_curvature(&self, order: usize, tau: f64, [k, l]: [usize; 2]) -> T {
+        let (sin, _) = self.sine::<ORDERS>(tau);
+        let [k, l] = [k, l].map(|k| self.basis.bump::<ORDERS>(k, tau));
+        let product: [T; ORDERS] = std::array::from_fn(|n| T::of(leibniz(n, &k, &l)));
+        -T::of(self.span.amplitude) * leibniz(order, &sin, &product)
     }
 
     /// Sine and cosine of the phase and their first derivatives by `τ`.
@@ -131,7 +148,7 @@ impl<T: Scalar> JointPath<'_, T> {
         let (mut sin, mut cos) = ([T::zero(); N], [T::zero(); N]);
         (sin[0], cos[0]) = s[0].simd_sin_cos();
         for n in 1..N {
-            // Leibniz's rule for `cos s · s'` and `−sin s · s'`.
+            // `cos s · s'` and `−sin s · s'`
             for k in 0..n {
                 let slope = s[n - k] * T::of(BINOMIAL[n - 1][k]);
                 sin[n] += cos[k] * slope;
@@ -154,6 +171,7 @@ fn phase<T: Scalar, const N: usize>(span: &Span, free: &[T], tau: f64) -> [T; N]
         15.0 / 16.0 * (-4.0 * x * u),
         15.0 / 16.0 * (12.0 * xx - 4.0),
         15.0 / 16.0 * (24.0 * x),
+        15.0 / 16.0 * 24.0,
     ];
     let mut phase = windowed(free, x);
     for n in 0..N {
@@ -165,14 +183,23 @@ fn phase<T: Scalar, const N: usize>(span: &Span, free: &[T], tau: f64) -> [T; N]
     phase
 }
 
+/// Values and derivatives: the most there are of anything here.
+const ORDERS: usize = 6;
+
 /// Binomial coefficients.
-const BINOMIAL: [[f64; 5]; 5] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0, 0.0, 0.0],
-    [1.0, 2.0, 1.0, 0.0, 0.0],
-    [1.0, 3.0, 3.0, 1.0, 0.0],
-    [1.0, 4.0, 6.0, 4.0, 1.0],
+const BINOMIAL: [[f64; ORDERS]; ORDERS] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 2.0, 1.0, 0.0, 0.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0, 0.0, 0.0],
+    [1.0, 4.0, 6.0, 4.0, 1.0, 0.0],
+    [1.0, 5.0, 10.0, 10.0, 5.0, 1.0],
 ];
+
+/// The `n`-th derivative of a product from those of its factors, by Leibniz's rule.
+fn leibniz<T: Scalar>(n: usize, a: &[T], b: &[T]) -> T {
+    (0..=n).fold(T::zero(), |sum, k| sum + a[k] * b[n - k] * T::of(BINOMIAL[n][k]))
+}
 
 /// The window `(1 − x²)³` times a polynomial in `x`, lowest power first, and first derivatives.
 pub(super) fn windowed<T: Scalar, const N: usize>(polynomial: &[T], x: f64) -> [T; N] {
@@ -183,15 +210,11 @@ pub(super) fn windowed<T: Scalar, const N: usize>(polynomial: &[T], x: f64) -> [
         (24.0 * xx - 6.0 * u) * u,
         (72.0 * u - 48.0 * xx) * x,
         72.0 * u - 288.0 * xx,
+        -720.0 * x,
     ];
+    let window = window.map(T::of);
     let factor: [T; N] = taylor(polynomial, T::of(x));
-    let mut product = [T::zero(); N];
-    for n in 0..N {
-        for k in 0..=n {
-            product[n] += factor[k] * T::of(BINOMIAL[n][k] * window[n - k]);
-        }
-    }
-    product
+    std::array::from_fn(|n| leibniz(n, &factor, &window))
 }
 
 /// A polynomial, lowest power first, and its first derivatives by Horner's rule.

@@ -198,7 +198,7 @@ fn refine(
     let mut best = Peak::default();
     for _ in 0..40 {
         let middle = (a * slope_b - b * slope_a) / (slope_b - slope_a);
-        let sample = joint.derivatives(middle);
+        let sample: Sample = joint.derivatives(middle);
         best = best.or(Peak { value: sample[order].abs(), tau: middle });
         let slope = sample[order + 1];
         // What is still to gain is below slope × width.
