@@ -71,10 +71,11 @@ impl Check {
 
 #[cfg(feature = "harness")]
 fn check_experiment(document: &Document) -> Result<(), CliError> {
+    use super::run::warn_of_robot;
     use crate::experiment::{ExperimentFile, Plan};
     let file = ExperimentFile::read(document)?;
     let plan = Plan::new(&file, document)?;
-    warn_of(&plan.instances[0].problem.task().robot);
+    warn_of_robot(&plan);
     print_resolved("experiment", &file)?;
     let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
     say!(

@@ -8,7 +8,9 @@ use clap::Args;
 use super::progress::Bar;
 use super::{CliError, read_or, warn_of, watch};
 use crate::analysis::{self, best_run, convergence, render, summary};
-use crate::experiment::{self, ExperimentFile, Plan, Progress, Record, RunSpec, Shard, Store};
+use crate::experiment::{
+    self, ExperimentFile, Instance, Plan, Progress, Record, RunSpec, Shard, Store,
+};
 use crate::input::Document;
 use crate::output::write_file;
 use crate::plot;
@@ -53,13 +55,17 @@ impl Progress for Lines<'_> {
         let instance = &self.plan.instances[run.instance].label;
         let space = if instance.is_empty() { "" } else { " " };
         let found = if record.cost.is_finite() {
-            format!("J {:.6}", record.cost)
+            format!("{} {:.6}", self.plan.cost_symbol(), record.cost)
         } else {
-            "no motion".to_owned()
+            "nothing found".to_owned()
         };
-        let status = record.status.name();
-        self.bar
-            .line(&format!("{optimiser}{space}{instance} seed {}: {found}, {status}", run.seed));
+        let (status, message) = (record.status.name(), record.status.message());
+        let (warning, colon) = if message.is_empty() { ("", "") } else { ("warning: ", ": ") };
+        let message = message.lines().next().unwrap_or_default();
+        self.bar.line(&format!(
+            "{warning}{optimiser}{space}{instance} seed {}: {found}, {status}{colon}{message}",
+            run.seed
+        ));
     }
 }
 
@@ -71,7 +77,7 @@ impl Run {
         let budget = self.budget.and_then(NonZeroU64::new);
         file.budget.evaluations = budget.unwrap_or(file.budget.evaluations);
         let plan = Plan::new(&file, &document)?;
-        warn_of(&plan.instances[0].problem.task().robot);
+        warn_of_robot(&plan);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
         let store = Store::open(&folder)?;
         keep_inputs(file, &document, &folder)?;
@@ -141,9 +147,13 @@ fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
     say!("{}", render(&summary(plan, &runs)?)?);
     let figures = folder.join("figures");
     let curves = convergence(plan, &runs, &store.read("traces", keys())?)?;
-    plot::convergence(&curves).save(&figures, "convergence")?;
+    plot::convergence(&curves, plan.cost_symbol()).save(&figures, "convergence")?;
     for (i, instance) in plan.instances.iter().enumerate() {
-        let Some(best) = best_run(runs.iter().filter(|run| run.instance == i)) else { continue };
+        let (Some(problem), Some(best)) =
+            (instance.reorientation(), best_run(runs.iter().filter(|run| run.instance == i)))
+        else {
+            continue;
+        };
         let optimiser = &plan.optimisers[best.optimiser].label;
         let on = if instance.label.is_empty() { "" } else { " for " };
         say!(
@@ -155,14 +165,24 @@ fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
         );
         // Costs of different instances do not compare, so there is no best of all to draw.
         if plan.instances.len() == 1 {
-            let problem = &instance.problem;
             let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
             plot::write_motion_figures(&figures, &motion, problem.task())?;
         }
     }
     say!("results: {}, figures: {}", folder.display(), figures.display());
     let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
-    if failed > 0 && failed == runs.len() { Err(CliError::NoMotion) } else { Ok(()) }
+    if failed > 0 {
+        eprintln!("warning: {failed} of {} runs failed or found nothing", runs.len());
+    }
+    Ok(())
+}
+
+/// Says what is unphysical about an experiment's robot.
+pub(super) fn warn_of_robot(plan: &Plan) {
+    // A sweep has one robot.
+    if let Some(problem) = plan.instances.iter().find_map(Instance::reorientation) {
+        warn_of(&problem.task().robot);
+    }
 }
 
 fn default_jobs() -> usize {

@@ -1,13 +1,17 @@
 //! From an experiment file to stored runs: config, plan, runner, store.
 
+mod caught;
 mod config;
+mod instance;
 mod plan;
 mod record;
 mod runner;
 mod store;
+mod sweep;
 
 pub use config::{BudgetTable, ExperimentFile, Sweep};
-pub use plan::{Entrant, Instance, Plan, RunSpec, Shard};
+pub use instance::{Instance, Subject};
+pub use plan::{Entrant, Plan, RunSpec, Shard};
 pub use record::{Record, Status};
 pub use runner::{Progress, RunError, run};
 pub use store::{Store, StoreError, write_table};

@@ -12,13 +12,16 @@ use super::style::{FONT, GRID, INK, Stroke, text_size, units};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Room above and to the right of the axes \[mm\].
+/// Room above and to the right of the axes, and for a title \[mm\].
 const TOP: f64 = 1.2;
+const TITLE: f64 = 3.6;
 const RIGHT: f64 = 2.0;
 
 /// One pair of axes with its lines.
 #[derive(Debug, Clone)]
 pub(super) struct Panel {
+    /// Stands above the axes, unless empty.
+    pub(super) title: String,
     pub(super) x: Axis,
     pub(super) y: Axis,
     /// Drawn first, lightly filled.
@@ -206,7 +209,7 @@ impl Panel {
         with_x_label: bool,
     ) -> Result<(), PlotError> {
         let mut chart = ChartBuilder::on(area)
-            .margin_top(units(TOP))
+            .margin_top(units(self.top()))
             .margin_right(units(RIGHT))
             .set_label_area_size(LabelAreaPosition::Left, units(left))
             .set_label_area_size(LabelAreaPosition::Bottom, units(below(with_x_label)))
@@ -264,10 +267,18 @@ impl Panel {
             let style = text.clone().pos(Pos::new(HPos::Center, VPos::Bottom));
             area.draw_text(&self.x.label, &style, (middle, height - units(0.3)))?;
         }
-        let middle = units(TOP) + (height - below - units(TOP)) / 2;
+        let style = text.clone().pos(Pos::new(HPos::Left, VPos::Top));
+        area.draw_text(&self.title, &style, (units(left), units(0.4)))?;
+        let top = units(self.top());
+        let middle = top + (height - below - top) / 2;
         let style = text.transform(FontTransform::Rotate270).pos(Pos::new(HPos::Center, VPos::Top));
         area.draw_text(&self.y.label, &style, (units(0.3), middle))?;
         Ok(())
+    }
+
+    /// Room above the axes \[mm\].
+    fn top(&self) -> f64 {
+        if self.title.is_empty() { TOP } else { TOP + TITLE }
     }
 
     /// Room that the vertical axis needs \[mm\]: its label, its tick texts, its ticks.

@@ -24,10 +24,10 @@ pub trait Problem: Sync {
     /// The cost of one point of the box.
     fn evaluate(&self, x: &[f64]) -> Evaluation;
 
-    /// The cost of many points; `out` has one place for each.
-    fn evaluate_batch(&self, points: &Points, out: &mut [Evaluation]) {
-        for (x, evaluation) in points.iter().zip(out) {
-            *evaluation = self.evaluate(x);
+    /// The cost of many points: `each` is told every one as soon as it is known, in their order.
+    fn evaluate_batch(&self, points: &Points, each: &mut dyn FnMut(Evaluation)) {
+        for x in points {
+            each(self.evaluate(x));
         }
     }
 
