@@ -190,10 +190,33 @@ where
     D: Deserializer<'de>,
     T: TryFrom<NonZeroU64>,
 {
+    count_from::<1, MOST, D, T>(deserializer)
+}
+
+/// A whole number from `LEAST` to `MOST`, where there may be none.
+pub fn optional_count<'de, const LEAST: u64, const MOST: u64, D, T>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: TryFrom<NonZeroU64>,
+{
+    count_from::<LEAST, MOST, D, T>(deserializer).map(Some)
+}
+
+/// A whole number from `LEAST` to `MOST`.
+pub fn count_from<'de, const LEAST: u64, const MOST: u64, D, T>(
+    deserializer: D,
+) -> Result<T, D::Error>
+where
+    D: Deserializer<'de>,
+    T: TryFrom<NonZeroU64>,
+{
     let value = i64::deserialize(deserializer)?;
-    let count = u64::try_from(value).ok().filter(|&n| n <= MOST).and_then(NonZeroU64::new);
+    let within = u64::try_from(value).ok().filter(|n| (LEAST..=MOST).contains(n));
+    let count = within.and_then(NonZeroU64::new);
     count.and_then(|count| T::try_from(count).ok()).ok_or_else(|| {
-        D::Error::custom(format!("found {value}, expected a whole number from 1 to {MOST}"))
+        D::Error::custom(format!("found {value}, expected a whole number from {LEAST} to {MOST}"))
     })
 }
 

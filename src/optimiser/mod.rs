@@ -2,16 +2,22 @@
 
 mod catalogue;
 mod conic;
+mod de;
+mod l_shade;
+mod population;
 mod pso;
 mod random;
 mod scp;
 
 pub use catalogue::{Setting, Settings};
+pub use de::De;
+pub use l_shade::LShade;
 pub use pso::{Inertia, Pso, Walls};
 pub use random::RandomSearch;
 pub use scp::{Ending, Scp};
 
 use crate::oracle::{Oracle, Rng, Stop};
+use crate::problem::{Evaluation, Formulation};
 
 /// A method of minimisation.
 ///
@@ -19,6 +25,16 @@ use crate::oracle::{Oracle, Rng, Stop};
 pub trait Optimiser: Sync {
     /// Minimises. `Ok` means that the method ended by itself.
     fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop>;
+
+    /// The variables in which it searches the task.
+    fn formulation(&self) -> Formulation {
+        Formulation::TimeFree
+    }
+}
+
+/// The cost to compare points by: what is no number is as bad as can be.
+fn rank(evaluation: &Evaluation) -> f64 {
+    if evaluation.cost.is_nan() { f64::INFINITY } else { evaluation.cost }
 }
 
 /// Writes a point drawn uniformly from the oracle's box.

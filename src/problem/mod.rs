@@ -1,5 +1,6 @@
 //! What an optimiser sees: a box and a cost.
 
+mod analytic;
 mod composite;
 mod formulation;
 mod motion;
@@ -7,6 +8,7 @@ mod published;
 mod reorientation;
 mod settings;
 
+pub use analytic::{Analytic, TestFunction};
 pub use composite::{Composite, Linearisation, Piece};
 pub use formulation::{Formulated, Formulation};
 pub use motion::{JointMotion, Motion};
