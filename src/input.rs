@@ -63,9 +63,9 @@ impl Document {
         Self { path: name.into(), text: text.to_owned() }
     }
 
-    /// Whether a key stands at the top level.
-    pub fn has_key(&self, key: &str) -> Result<bool, InputError> {
-        Ok(self.table()?.get_ref().contains_key(key))
+    /// Where a key stands at the top level, if it does.
+    pub fn key(&self, key: &str) -> Result<Option<Range<usize>>, InputError> {
+        Ok(self.table()?.get_ref().get_key_value(key).map(|(key, _)| key.span()))
     }
 
     /// Parses the whole text as `T`.

@@ -69,16 +69,22 @@ fn target_columns(plan: &Plan, groups: &[Vec<&Run>]) -> Vec<Column> {
             let Some(shown) = target(group[0]) else { return String::new() };
             let reached = |run: &&&Run| target(run).is_some_and(|target| run.cost <= target);
             let share = format!("{}/{}", group.iter().filter(reached).count(), group.len());
-            if distinct.len() == 1 { share } else { format!("{share} ≤ {shown}") }
+            if distinct.len() == 1 { share } else { format!("{share} ≤ {}", plain(shown)) }
         });
         let cells: Vec<String> = cells.collect();
         let name = match distinct[..] {
-            [target] => format!("{symbol} ≤ {target}"),
+            [target] => format!("{symbol} ≤ {}", plain(target)),
             _ => format!("{symbol}, target {}", k + 1),
         };
         Column::new(name.into(), cells)
     };
     (0..most).map(column).collect()
+}
+
+/// A number as given, with an exponent where it is far from one.
+fn plain(number: f64) -> String {
+    let written_out = number == 0.0 || (1e-3..1e6).contains(&number.abs());
+    if written_out { format!("{number}") } else { format!("{number:e}") }
 }
 
 fn quantile_of(group: &[&Run], value: fn(&Run) -> f64, q: f64) -> f64 {

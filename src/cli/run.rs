@@ -54,10 +54,10 @@ impl Progress for Lines<'_> {
         let optimiser = &self.plan.optimisers[run.optimiser].label;
         let instance = &self.plan.instances[run.instance].label;
         let space = if instance.is_empty() { "" } else { " " };
-        let found = if record.cost.is_finite() {
-            format!("{} {:.6}", self.plan.cost_symbol(), record.cost)
-        } else {
-            "nothing found".to_owned()
+        let found = match record.cost {
+            cost if !cost.is_finite() => "nothing found".to_owned(),
+            cost if self.plan.instances[run.instance].is_task() => format!("J {cost:.6}"),
+            cost => format!("f {cost:.3e}"),
         };
         let (status, message) = (record.status.name(), record.status.message());
         let (warning, colon) = if message.is_empty() { ("", "") } else { ("warning: ", ": ") };
@@ -80,7 +80,7 @@ impl Run {
         warn_of_robot(&plan);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
         let store = Store::open(&folder)?;
-        keep_inputs(file, &document, &folder)?;
+        keep_inputs(file.with_targets(&plan), &document, &folder)?;
         self.run_missing(&plan, &store, &folder)?;
         report(&plan, &store, &folder)
     }
@@ -121,10 +121,11 @@ fn keep_inputs(
     document: &Document,
     folder: &Path,
 ) -> Result<(), CliError> {
-    if let Some(path) = file.task.robot_file(document) {
+    let robot = file.task.as_ref().and_then(|task| task.robot_file(document));
+    if let Some(path) = robot {
         let robot = RobotFile::read(&Document::read(&path)?)?;
         write_file(&folder.join("robot.toml"), toml::to_string(&robot)?.as_bytes())?;
-        file.task = file.task.with_robot("robot.toml");
+        file.task = file.task.map(|task| task.with_robot("robot.toml"));
     }
     let (path, text) = (folder.join("experiment.toml"), toml::to_string(&file)?);
     if std::fs::read_to_string(&path).is_ok_and(|before| before != text) {

@@ -7,9 +7,10 @@ use std::str::FromStr;
 
 use serde::Serialize;
 use sha2::{Digest, Sha256};
+use toml::Spanned;
 
 use super::record::FORMAT;
-use super::{ExperimentFile, Instance, Subject, sweep};
+use super::{ExperimentFile, Instance, Subject, Targets, sweep};
 use crate::input::{Document, InputError};
 use crate::optimiser::Settings;
 use crate::problem::{Accuracy, Boxes};
@@ -88,16 +89,27 @@ impl Shard {
 impl Plan {
     /// Spells an experiment out. Two runs that would be the same are a mistake.
     pub fn new(file: &ExperimentFile, document: &Document) -> Result<Self, InputError> {
-        let mut instances = sweep::instances(file, document)?;
-        for instance in &mut instances {
-            instance.targets = file.targets.iter().map(|target| target.0).collect();
+        let mut instances = match file {
+            ExperimentFile { functions: Some(functions), .. } => {
+                check_field(file.optimiser.get_ref(), document)?;
+                functions.instances(document)?
+            }
+            ExperimentFile { task: Some(task), trajectory: Some(trajectory), sweep, .. } => {
+                sweep::instances(task, trajectory, sweep, document)?
+            }
+            // Reading a file fills in what it leaves out.
+            _ => Vec::new(),
+        };
+        if let Some(targets) = &file.targets {
+            Targets::give(targets, &mut instances, document)?;
         }
-        let field = file.optimiser.get_ref();
-        let plan = Self::over(&file.name, instances, field, file.seeds, file.budget.evaluations);
+        let field: Vec<Settings> =
+            file.optimiser.get_ref().iter().map(|settings| settings.get_ref().clone()).collect();
+        let plan = Self::over(&file.name, instances, &field, file.seeds, file.budget.evaluations);
         let mut keys = HashSet::new();
         if let Some(twin) = plan.runs.iter().find(|run| !keys.insert(&run.key)) {
             let message = format!(
-                "{} stands twice with the same settings, or a list of the sweep repeats a value",
+                "{} stands twice with the same settings, or a list of the sweep or of the functions repeats a value",
                 plan.optimisers[twin.optimiser].label
             );
             return Err(document.error_at(file.optimiser.span(), message, None));
@@ -132,6 +144,25 @@ impl Plan {
     pub fn cost_symbol(&self) -> &'static str {
         if self.instances.iter().any(Instance::is_task) { "J" } else { "f" }
     }
+}
+
+/// Whether every optimiser of a field can search test functions: those have no derivatives, and
+/// none of the task's formulations.
+fn check_field(field: &[Spanned<Settings>], document: &Document) -> Result<(), InputError> {
+    for spanned in field {
+        let settings = spanned.get_ref();
+        let name = settings.name();
+        let default = Settings::by_name(name).map(|default| default.formulation());
+        let message = if settings.optimiser().needs_derivatives() {
+            format!("`{name}` needs derivatives, which test functions do not give")
+        } else if default != Some(settings.formulation()) {
+            "found a formulation, which only the reorientation task has".to_owned()
+        } else {
+            continue;
+        };
+        return Err(document.error_at(spanned.span(), message, None));
+    }
+    Ok(())
 }
 
 /// Labels the field: optimiser and, on the task, formulation, with the settings that differ from the

@@ -3,13 +3,16 @@
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use super::{ExperimentFile, Instance};
+use super::{Instance, Sweep};
 use crate::input::{Document, InputError, Positive};
-use crate::task::Task;
+use crate::problem::TrajectoryTable;
+use crate::task::{Task, TaskTable};
 
 /// The cross product of the sweep's lists.
 pub(super) fn instances(
-    file: &ExperimentFile,
+    task: &TaskTable,
+    trajectory: &TrajectoryTable,
+    sweep: &Sweep,
     document: &Document,
 ) -> Result<Vec<Instance>, InputError> {
     /// A task on its way through the lists, with what they have set so far.
@@ -44,9 +47,7 @@ pub(super) fn instances(
             limit.0.to_string()
         }
     };
-    let sweep = &file.sweep;
-    let task = file.task.build(document)?;
-    let terms = file.trajectory.terms().clone();
+    let (task, terms) = (task.build(document)?, trajectory.terms().clone());
     let mut drafts = vec![Draft { label: String::new(), task, terms }];
     drafts = cross(drafts, "weight_base", &sweep.weight_base, |draft, weight| {
         draft.task.base_weight = weight.0;
@@ -60,7 +61,7 @@ pub(super) fn instances(
         terms.get_ref().to_string()
     });
     let build = |draft: Draft| {
-        let table = file.trajectory.with_terms(draft.terms);
+        let table = trajectory.with_terms(draft.terms);
         let (problem, boxes) = table.build(Arc::new(draft.task), document)?;
         Ok(Instance::task(draft.label, Arc::new(problem), boxes))
     };

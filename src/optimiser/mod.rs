@@ -30,6 +30,11 @@ pub trait Optimiser: Sync {
     fn formulation(&self) -> Formulation {
         Formulation::TimeFree
     }
+
+    /// Whether it can search only problems with derivatives.
+    fn needs_derivatives(&self) -> bool {
+        false
+    }
 }
 
 /// The cost to compare points by: what is no number is as bad as can be.

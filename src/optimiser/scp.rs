@@ -70,6 +70,10 @@ impl Optimiser for Scp {
         }
         Ok(())
     }
+
+    fn needs_derivatives(&self) -> bool {
+        true
+    }
 }
 
 /// The trust region's smallest radius.

@@ -55,6 +55,9 @@ pub(super) struct Band {
     pub(super) points: Vec<[f64; 3]>,
 }
 
+/// Most powers of ten that are labelled on a logarithmic axis.
+const MOST_DECADES: f64 = 8.0;
+
 impl Axis {
     /// A linear axis over a range and a little more on both sides, as a share of its width.
     pub(super) fn linear(label: &str, [low, high]: [f64; 2], more: f64) -> Self {
@@ -84,10 +87,12 @@ impl Axis {
             d if d < 2.5 => &[1.0, 2.0, 5.0],
             _ => &[1.0],
         };
+        let every = ((decades / MOST_DECADES).ceil() as i32).max(1);
         let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;
         let ticks = exponents
             .flat_map(|e| mantissas.iter().map(move |&m| (m, e)))
             .filter(|&(m, e)| (low..=high * (1.0 + 1e-9)).contains(&(m * 10_f64.powi(e))))
+            .filter(|(_, e)| e % every == 0)
             .map(|(m, e)| (m.log10() + f64::from(e), power(m, e)));
         Self {
             label: label.to_owned(),
@@ -159,7 +164,8 @@ fn power(mantissa: f64, exponent: i32) -> String {
     }
     let raised = |c: char| match c.to_digit(10) {
         Some(digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit as usize).unwrap_or(c),
-        None => '⁻',
+        // The font has no raised minus sign; its macron looks like one.
+        None => '¯',
     };
     let digits: String = exponent.to_string().chars().map(raised).collect();
     if mantissa == 1.0 { format!("10{digits}") } else { format!("{mantissa}·10{digits}") }

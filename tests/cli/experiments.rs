@@ -139,6 +139,39 @@ fn figures_come_in_three_formats_with_text_that_is_there() {
     }
 }
 
+/// Instances that differ in shift and rotation alone are summarised and drawn together; what only a
+/// task has is not shown.
+#[test]
+fn test_functions_are_problems_like_any_other() {
+    let text = "name = 'functions'\nseeds = 2\nbudget = { evaluations = 3000 }\n[functions]\n\
+        name = ['sphere', 'rastrigin']\ndimension = [2, 3]\ninstances = 3\n\
+        [[optimiser]]\npso = { population = 20 }\n[[optimiser]]\nrandom = {}\n";
+    let folder = Folder::new().with("functions.toml", text);
+    let check = stdout(&folder.run(&["check", "functions.toml"]));
+    assert!(check.contains("# 48 runs: 12 instances × 2 optimisers × 2 seeds"), "{check}");
+    let summary = run(&folder, &["functions.toml", "--out", "out"]);
+    assert_eq!(files(&folder.path().join("out/runs")).len(), 48);
+    assert_eq!(files(&folder.path().join("out/figures")).len(), 3);
+    let rows: Vec<&str> = summary.lines().filter(|line| line.contains("dimension=")).collect();
+    assert_eq!(rows.len(), 8, "{summary}");
+    let cells: Vec<&str> = rows[0].split_whitespace().collect();
+    assert_eq!(cells[..5], ["sphere", "dimension=2", "pso", "6", "0"]);
+    assert_eq!(cells[cells.len() - 3..], ["6/6", "6/6", "6/6"], "{summary}");
+    assert!(summary.contains("f ≤ 0.01") && summary.contains("f ≤ 1e-8"), "{summary}");
+    for word in ["t_f", "residual", "motion", "J"] {
+        assert!(!summary.contains(word), "{word}: {summary}");
+    }
+    for runs in table(&folder.path().join("out/runs")) {
+        let name = runs.column("problem").unwrap().str().unwrap().get(0).unwrap();
+        assert!(["sphere", "rastrigin"].contains(&name));
+        assert!(runs.column("t_f").unwrap().get(0).unwrap().is_null());
+        assert_eq!(runs.column("evaluations").unwrap().u64().unwrap().get(0), Some(3000));
+    }
+    run(&folder, &["out/experiment.toml", "--out", "again"]);
+    let traces = |out: &str| files(&folder.path().join(out).join("traces"));
+    assert_eq!(traces("out"), traces("again"));
+}
+
 #[test]
 fn shipped_experiments_are_valid() {
     for (name, bytes) in files(Path::new("experiments")) {
