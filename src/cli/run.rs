@@ -14,7 +14,7 @@ use crate::experiment::{
 use crate::input::Document;
 use crate::output::write_file;
 use crate::plot;
-use crate::problem::Motion;
+use crate::problem::{BestKnown, Motion};
 use crate::robot::RobotFile;
 
 /// Run an experiment: every optimiser on every instance for every seed
@@ -156,9 +156,11 @@ fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
             continue;
         };
         let optimiser = &plan.optimisers[best.optimiser].label;
+        let known = BestKnown::of(problem)
+            .map_or_else(String::new, |known| format!(" ({})", known.compared_with(best.cost)));
         let on = if instance.label.is_empty() { "" } else { " for " };
         say!(
-            "best motion{on}{}: {optimiser}, seed {}: J {:.6}, t_f {:.4} s",
+            "best motion{on}{}: {optimiser}, seed {}: J {:.6}{known}, t_f {:.4} s",
             instance.label,
             best.seed,
             best.cost,

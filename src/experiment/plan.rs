@@ -1,16 +1,15 @@
 //! An experiment spelt out: every instance, every run, every key.
 
 use std::collections::{HashMap, HashSet};
-use std::fmt::Write as _;
 use std::num::NonZeroU64;
 use std::str::FromStr;
 
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 use toml::Spanned;
 
 use super::record::FORMAT;
 use super::{ExperimentFile, Instance, Subject, Targets, sweep};
+use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::optimiser::Settings;
 use crate::problem::{Accuracy, Boxes};
@@ -133,7 +132,14 @@ impl Plan {
             for (o, entrant) in optimisers.iter().enumerate() {
                 runs.extend((1..=seeds.get()).map(|seed| {
                     let recipe = recipe(instance, &entrant.settings, seed, budget);
-                    RunSpec { key: hash(&recipe), recipe, instance: i, optimiser: o, seed, budget }
+                    RunSpec {
+                        key: digest(&recipe),
+                        recipe,
+                        instance: i,
+                        optimiser: o,
+                        seed,
+                        budget,
+                    }
                 }));
             }
         }
@@ -224,12 +230,4 @@ fn recipe(instance: &Instance, settings: &Settings, seed: u64, budget: u64) -> S
         evaluations: budget,
     };
     serde_json::to_string(&recipe).expect("a recipe is plain data")
-}
-
-/// The first 16 hexadecimal digits of a text's SHA-256.
-fn hash(text: &str) -> String {
-    Sha256::digest(text).iter().take(8).fold(String::new(), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
 }

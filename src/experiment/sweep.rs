@@ -5,8 +5,11 @@ use std::sync::Arc;
 
 use super::{Instance, Sweep};
 use crate::input::{Document, InputError, Positive};
-use crate::problem::TrajectoryTable;
+use crate::problem::{BestKnown, TrajectoryTable};
 use crate::task::{Task, TaskTable};
+
+/// Targets where the file states none: by which shares they exceed the best known cost.
+const GAPS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// The cross product of the sweep's lists.
 pub(super) fn instances(
@@ -63,7 +66,10 @@ pub(super) fn instances(
     let build = |draft: Draft| {
         let table = trajectory.with_terms(draft.terms);
         let (problem, boxes) = table.build(Arc::new(draft.task), document)?;
-        Ok(Instance::task(draft.label, Arc::new(problem), boxes))
+        let known = BestKnown::of(&problem);
+        let targets = known.into_iter().flat_map(|known| GAPS.map(|gap| known.target(gap)));
+        let targets = targets.collect();
+        Ok(Instance { targets, ..Instance::task(draft.label, Arc::new(problem), boxes) })
     };
     drafts.into_iter().map(build).collect()
 }

@@ -1,6 +1,7 @@
 //! What an optimiser sees: a box and a cost.
 
 mod analytic;
+mod best_known;
 mod composite;
 mod formulation;
 mod motion;
@@ -9,6 +10,7 @@ mod reorientation;
 mod settings;
 
 pub use analytic::{Analytic, TestFunction};
+pub use best_known::{BestKnown, fingerprint};
 pub use composite::{Composite, Linearisation, Piece};
 pub use formulation::{Formulated, Formulation};
 pub use motion::{JointMotion, Motion};

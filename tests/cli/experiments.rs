@@ -172,6 +172,34 @@ fn test_functions_are_problems_like_any_other() {
     assert_eq!(traces("out"), traces("again"));
 }
 
+/// Without targets of its own an experiment takes those of the best motions known, 0.781849 and
+/// 0.631490, and keeps them with its results.
+#[test]
+fn targets_follow_the_best_known() {
+    let text = "name = 'x'\nseeds = 1\nbudget = { evaluations = 20 }\n[[optimiser]]\nrandom = {}\n";
+    let folder = Folder::new().with("one.toml", text);
+    let summary = run(&folder, &["one.toml", "--out", "one"]);
+    for target in ["J ≤ 0.860033", "J ≤ 0.789667", "J ≤ 0.78263"] {
+        assert!(summary.contains(target), "{summary}");
+    }
+    assert!(summary.contains(" above the best known, 0.781849)"), "{summary}");
+    let runs = &table(&folder.path().join("one/runs"))[0];
+    let targets = runs.column("targets").unwrap().list().unwrap().get_as_series(0).unwrap();
+    assert_eq!(targets.f64().unwrap().get(0), Some(0.860033));
+    let kept = fs::read_to_string(folder.path().join("one/experiment.toml")).unwrap();
+    assert!(kept.contains("targets = [0.860033, 0.789667, 0.78263]"), "{kept}");
+
+    let folder = folder.with("many.toml", text.to_owned() + "[sweep]\nterms = [2, 3, 5]\n");
+    let summary = run(&folder, &["many.toml", "--out", "many"]);
+    assert!(summary.contains("J, target 1"), "{summary}");
+    for target in ["0/1 ≤ 0.860033", "0/1 ≤ 0.694639"] {
+        assert!(summary.contains(target), "{summary}");
+    }
+    let kept = stdout(&folder.run(&["check", "many/experiment.toml"]));
+    assert!(kept.contains("\"terms=5\" = []"), "{kept}");
+    assert_eq!(run(&folder, &["many/experiment.toml", "--out", "many"]), summary);
+}
+
 #[test]
 fn shipped_experiments_are_valid() {
     for (name, bytes) in files(Path::new("experiments")) {
