@@ -3,7 +3,7 @@
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
-use super::{De, LShade, Optimiser, Pso, RandomSearch, Scp};
+use super::{De, LShade, NelderMead, Optimiser, Pso, RandomSearch, Scp};
 use crate::problem::Formulation;
 
 /// From one line an optimiser: the choice of one with its settings, and what has to be known of each.
@@ -44,6 +44,8 @@ catalogue! {
     "de": De,
     /// Differential evolution that adapts its parameters and shrinks its population.
     "l-shade": LShade,
+    /// The simplex method, from random starts.
+    "nelder-mead": NelderMead,
     /// The paper's particle swarm.
     "pso": Pso,
     /// Random search.
