@@ -1,6 +1,7 @@
 //! Optimisers: plain control flow over an [`Oracle`].
 
 mod catalogue;
+mod cma_es;
 mod conic;
 mod de;
 mod l_shade;
@@ -11,6 +12,7 @@ mod random;
 mod scp;
 
 pub use catalogue::{Setting, Settings};
+pub use cma_es::CmaEs;
 pub use de::De;
 pub use l_shade::LShade;
 pub use nelder_mead::NelderMead;
