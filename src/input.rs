@@ -226,6 +226,12 @@ pub fn fraction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Er
     check(value, (0.0..=1.0).contains(&value), "a number from 0 to 1")
 }
 
+/// A number above 0, 1 at most.
+pub fn share<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let value = f64::deserialize(deserializer)?;
+    check(value, value > 0.0 && value <= 1.0, "a number above 0, 1 at most")
+}
+
 /// A fixed number of finite numbers.
 pub fn finite_array<'de, const N: usize, D>(deserializer: D) -> Result<[f64; N], D::Error>
 where

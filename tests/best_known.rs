@@ -21,7 +21,8 @@ fn every_entry_replays_to_its_printed_digits() {
         assert_eq!(entry.coefficients.len(), problem.family().joints());
         assert!(entry.coefficients.iter().all(|row| row.len() == entry.terms));
     }
-    for (terms, duration, digits) in [(2, 7.818486, 1e-6), (3, 6.314900, 1e-6), (4, 6.14653, 1e-5)]
+    for (terms, duration, digits) in
+        [(2, 7.818_486, 1e-6), (3, 6.314_900, 1e-6), (4, 6.14653, 1e-5)]
     {
         let known = BestKnown::of(&problem(&format!("[trajectory]\nterms = {terms}\n"))).unwrap();
         assert!((known.t_f - duration).abs() < digits, "{known}");

@@ -200,8 +200,23 @@ fn check(plan: &Plan, mood: Mood, always: bool, runs: &DataFrame, traces: &DataF
     }
 }
 
+/// Panics of [`Fickle`] that reached the program's own panic hook, which would print them.
+static HEARD: AtomicU64 = AtomicU64::new(0);
+
+fn listen() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if panic.to_string().contains("out of sorts") {
+            HEARD.fetch_add(1, Ordering::Relaxed);
+        } else {
+            print(panic);
+        }
+    }));
+}
+
 #[test]
 fn every_run_leaves_a_record_whatever_the_problem_does() {
+    listen();
     let moods = [Mood::Panics, Mood::NotANumber, Mood::Infinite, Mood::MinusInfinite];
     for (mood, always) in moods.into_iter().flat_map(|mood| [(mood, false), (mood, true)]) {
         for budget in [1, 2, 10, 64, 65, 151, 400] {
@@ -223,6 +238,7 @@ fn every_run_leaves_a_record_whatever_the_problem_does() {
             assert_eq!(summary.height(), plan.optimisers.len());
         }
     }
+    assert_eq!(HEARD.load(Ordering::Relaxed), 0, "panics were heard");
 }
 
 /// Costs its number of calls so far; panics at one call.

@@ -3,7 +3,7 @@
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
-use super::{De, LShade, Optimiser, Pso, RandomSearch, Scp};
+use super::{CmaEs, De, LShade, NelderMead, Optimiser, Pso, RandomSearch, Scp};
 use crate::problem::Formulation;
 
 /// From one line an optimiser: the choice of one with its settings, and what has to be known of each.
@@ -40,10 +40,14 @@ macro_rules! catalogue {
 }
 
 catalogue! {
+    /// Evolution strategy with covariance matrix adaptation, restarted with a growing population.
+    "cma-es": CmaEs,
     /// Differential evolution.
     "de": De,
     /// Differential evolution that adapts its parameters and shrinks its population.
     "l-shade": LShade,
+    /// The simplex method, from random starts.
+    "nelder-mead": NelderMead,
     /// The paper's particle swarm.
     "pso": Pso,
     /// Random search.

@@ -1,17 +1,21 @@
 //! Optimisers: plain control flow over an [`Oracle`].
 
 mod catalogue;
+mod cma_es;
 mod conic;
 mod de;
 mod l_shade;
+mod nelder_mead;
 mod population;
 mod pso;
 mod random;
 mod scp;
 
 pub use catalogue::{Setting, Settings};
+pub use cma_es::CmaEs;
 pub use de::De;
 pub use l_shade::LShade;
+pub use nelder_mead::NelderMead;
 pub use pso::{Inertia, Pso, Walls};
 pub use random::RandomSearch;
 pub use scp::{Ending, Scp};
@@ -46,5 +50,12 @@ fn rank(evaluation: &Evaluation) -> f64 {
 fn uniform_point(oracle: &Oracle<'_>, rng: &mut Rng, x: &mut [f64]) {
     for (x, [lower, upper]) in x.iter_mut().zip(oracle.bounds().iter()) {
         *x = rng.uniform(lower, upper);
+    }
+}
+
+/// Writes the point of the oracle's box that stands at `z` in the unit box.
+fn scale_from_unit(oracle: &Oracle<'_>, z: &[f64], x: &mut [f64]) {
+    for ((x, z), [lower, upper]) in x.iter_mut().zip(z).zip(oracle.bounds().iter()) {
+        *x = (lower + z * (upper - lower)).clamp(lower, upper);
     }
 }

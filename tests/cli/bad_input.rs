@@ -128,6 +128,22 @@ fn experiments() {
             "population_huge",
             "name = 'x'\n[[optimiser]]\npso = { population = 1_000_000_000_000 }\n".to_owned(),
         ),
+        ("too_few_vectors", "name = 'x'\n[[optimiser]]\nde = { population = 3 }\n".to_owned()),
+        ("weight_not_a_number", "name = 'x'\n[[optimiser]]\nde = { weight = nan }\n".to_owned()),
+        ("crossover_negative", "name = 'x'\n[[optimiser]]\nde = { crossover = -0.1 }\n".to_owned()),
+        ("no_memory", "name = 'x'\n[[optimiser]]\nl-shade = { memory = 0 }\n".to_owned()),
+        ("archive_negative", "name = 'x'\n[[optimiser]]\nl-shade = { archive = -1 }\n".to_owned()),
+        (
+            "population_in_parts",
+            "name = 'x'\n[[optimiser]]\nl-shade = { population = 40.5 }\n".to_owned(),
+        ),
+        ("simplex_flat", "name = 'x'\n[[optimiser]]\nnelder-mead = { simplex = 0 }\n".to_owned()),
+        (
+            "tolerance_infinite",
+            "name = 'x'\n[[optimiser]]\nnelder-mead = { size_tolerance = inf }\n".to_owned(),
+        ),
+        ("step_too_large", "name = 'x'\n[[optimiser]]\ncma-es = { step = 1.5 }\n".to_owned()),
+        ("no_growth", "name = 'x'\n[[optimiser]]\ncma-es = { growth = 0 }\n".to_owned()),
         ("target_not_a_number", format!("name = 'x'\ntargets = [nan]{FIELD}")),
         ("targets_no_list", format!("name = 'x'\ntargets = 0.9{FIELD}")),
         (
