@@ -63,9 +63,9 @@ impl Document {
         Self { path: name.into(), text: text.to_owned() }
     }
 
-    /// Whether a key stands at the top level.
-    pub fn has_key(&self, key: &str) -> Result<bool, InputError> {
-        Ok(self.table()?.get_ref().contains_key(key))
+    /// Where a key stands at the top level, if it does.
+    pub fn key(&self, key: &str) -> Result<Option<Range<usize>>, InputError> {
+        Ok(self.table()?.get_ref().get_key_value(key).map(|(key, _)| key.span()))
     }
 
     /// Parses the whole text as `T`.
@@ -190,10 +190,33 @@ where
     D: Deserializer<'de>,
     T: TryFrom<NonZeroU64>,
 {
+    count_from::<1, MOST, D, T>(deserializer)
+}
+
+/// A whole number from `LEAST` to `MOST`, where there may be none.
+pub fn optional_count<'de, const LEAST: u64, const MOST: u64, D, T>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: TryFrom<NonZeroU64>,
+{
+    count_from::<LEAST, MOST, D, T>(deserializer).map(Some)
+}
+
+/// A whole number from `LEAST` to `MOST`.
+pub fn count_from<'de, const LEAST: u64, const MOST: u64, D, T>(
+    deserializer: D,
+) -> Result<T, D::Error>
+where
+    D: Deserializer<'de>,
+    T: TryFrom<NonZeroU64>,
+{
     let value = i64::deserialize(deserializer)?;
-    let count = u64::try_from(value).ok().filter(|&n| n <= MOST).and_then(NonZeroU64::new);
+    let within = u64::try_from(value).ok().filter(|n| (LEAST..=MOST).contains(n));
+    let count = within.and_then(NonZeroU64::new);
     count.and_then(|count| T::try_from(count).ok()).ok_or_else(|| {
-        D::Error::custom(format!("found {value}, expected a whole number from 1 to {MOST}"))
+        D::Error::custom(format!("found {value}, expected a whole number from {LEAST} to {MOST}"))
     })
 }
 
@@ -201,6 +224,12 @@ where
 pub fn fraction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let value = f64::deserialize(deserializer)?;
     check(value, (0.0..=1.0).contains(&value), "a number from 0 to 1")
+}
+
+/// A number above 0, 1 at most.
+pub fn share<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let value = f64::deserialize(deserializer)?;
+    check(value, value > 0.0 && value <= 1.0, "a number above 0, 1 at most")
 }
 
 /// A fixed number of finite numbers.

@@ -44,7 +44,7 @@
 //! | 3 | [`momentum`], [`trajectory`] |
 //! | 2 | [`kinematics`] |
 //! | 1 | [`robot`], [`so3`] |
-//! | 0 | [`scalar`], [`input`], [`output`] |
+//! | 0 | [`scalar`], [`input`], [`output`], [`digest`] |
 //!
 //! # Example
 //!
@@ -65,6 +65,7 @@
 pub mod analysis;
 pub mod attitude;
 pub mod cli;
+pub mod digest;
 #[cfg(feature = "harness")]
 pub mod experiment;
 pub mod export;

@@ -8,13 +8,13 @@ use super::runs::{Run, groups};
 use super::summary::quantile;
 use crate::experiment::Plan;
 
-/// Quartiles of the best cost so far over the seeds of one optimiser.
+/// Quartiles of the best cost so far over the seeds and the instances of a group.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     /// The optimiser's label.
     pub optimiser: String,
-    /// The instance's label.
-    pub instance: String,
+    /// The label of the instance, or of the group it belongs to.
+    pub group: String,
     /// Evaluations made, ascending.
     pub evaluations: Vec<f64>,
     /// Lower quartile, median and upper quartile at each.
@@ -24,13 +24,13 @@ pub struct Curve {
 /// Points of a curve, spaced evenly on a logarithmic axis.
 const POINTS: usize = 200;
 
-/// The convergence of every optimiser on every instance, as the searches evaluated their costs.
+/// The convergence of every optimiser on every group of instances, as the searches evaluated their costs.
 ///
 /// A curve holds where every run of the group still counts: up to the smallest budget among them. A
 /// run that ended early keeps the best it had.
 pub fn convergence(plan: &Plan, runs: &[Run], traces: &DataFrame) -> PolarsResult<Vec<Curve>> {
     let steps = steps(traces)?;
-    Ok(groups(runs).iter().map(|group| curve(plan, group, &steps)).collect())
+    Ok(groups(plan, runs).iter().map(|group| curve(plan, group, &steps)).collect())
 }
 
 /// The rows of a run's trace: evaluation and best cost.
@@ -68,7 +68,7 @@ fn curve(plan: &Plan, group: &[&Run], steps: &HashMap<String, Trace>) -> Curve {
     });
     Curve {
         optimiser: plan.optimisers[group[0].optimiser].label.clone(),
-        instance: plan.instances[group[0].instance].label.clone(),
+        group: plan.instances[group[0].instance].group.clone(),
         quartiles: quartiles.collect(),
         evaluations,
     }

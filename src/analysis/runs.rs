@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use polars::prelude::*;
 
-use crate::experiment::{Plan, RunSpec};
+use crate::experiment::{Plan, RunSpec, Status};
 
 /// A stored run.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Run {
     pub seed: u64,
     /// Evaluations the run was allowed.
     pub budget: u64,
-    /// Best cost, certified; infinite for a run that failed.
+    /// Best cost, certified where there is a motion to certify; infinite for a run that failed.
     pub cost: f64,
     /// Error of the base \[°\].
     pub residual_deg: f64,
@@ -29,7 +29,7 @@ pub struct Run {
     pub evaluations: u64,
     /// Wall time \[s\].
     pub seconds: f64,
-    /// Bump coefficients of the best motion, joint by joint.
+    /// Bump coefficients of the best motion, joint by joint; none where there is no motion.
     pub coefficients: Vec<f64>,
 }
 
@@ -52,9 +52,12 @@ pub fn runs(plan: &Plan, frame: &DataFrame) -> PolarsResult<Vec<Run>> {
         let Some((key, spec)) = key.get(i).and_then(|key| planned.get_key_value(key)) else {
             return Ok(None);
         };
-        let failed = status.get(i) == Some("panicked");
+        let failed = status.get(i).is_some_and(Status::is_failure);
         let cost = cost.get(i).filter(|cost| !failed && cost.is_finite());
-        let coefficients = coefficients.get_as_series(i).unwrap_or_default();
+        let coefficients = match coefficients.get_as_series(i) {
+            Some(list) => list.f64()?.into_no_null_iter().collect(),
+            None => Vec::new(),
+        };
         Ok(Some(Run {
             key: (*key).to_owned(),
             optimiser: spec.optimiser,
@@ -66,23 +69,23 @@ pub fn runs(plan: &Plan, frame: &DataFrame) -> PolarsResult<Vec<Run>> {
             duration: duration.get(i).unwrap_or(f64::NAN),
             evaluations: evaluations.get(i).unwrap_or_default(),
             seconds: seconds.get(i).unwrap_or(f64::NAN),
-            coefficients: coefficients.f64()?.into_no_null_iter().collect(),
+            coefficients,
         }))
     };
     (0..frame.height()).filter_map(|i| row(i).transpose()).collect()
 }
 
-/// The run with the lowest cost, if any found a motion.
+/// The run with the lowest cost, unless all failed.
 pub fn best_run<'a>(runs: impl Iterator<Item = &'a Run>) -> Option<&'a Run> {
     runs.filter(|run| run.cost.is_finite()).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
-/// Groups runs by instance and optimiser, in the order of their first row.
-pub(super) fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
+/// Groups runs by optimiser and the instances' groups, in the order of their first row.
+pub(super) fn groups<'a>(plan: &Plan, runs: &'a [Run]) -> Vec<Vec<&'a Run>> {
+    let of = |run: &Run| (run.optimiser, plan.instances[run.instance].group.as_str());
     let mut groups: Vec<Vec<&Run>> = Vec::new();
     for run in runs {
-        let fits =
-            |g: &&mut Vec<&Run>| g[0].optimiser == run.optimiser && g[0].instance == run.instance;
+        let fits = |group: &&mut Vec<&Run>| of(group[0]) == of(run);
         match groups.iter_mut().find(fits) {
             Some(group) => group.push(run),
             None => groups.push(vec![run]),

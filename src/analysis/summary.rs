@@ -1,9 +1,9 @@
-//! One line an optimiser and instance.
+//! One line an optimiser and group of instances.
 
 use polars::prelude::*;
 
 use super::runs::{Run, groups};
-use crate::experiment::Plan;
+use crate::experiment::{Instance, Plan};
 
 /// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7), of
 /// sorted values; an infinite neighbour makes it infinite.
@@ -13,11 +13,14 @@ pub(super) fn quantile(sorted: &[f64], q: f64) -> f64 {
     if low == high { low } else { low + (high - low) * position.fract() }
 }
 
-/// One line an optimiser and instance: quartiles of the best cost over the seeds, failures counted
-/// as infinite, and the best motion's residual \[°\] and duration \[s\]. A column for each of the
-/// plan's targets says how many runs reached it. Costs are certified.
+/// One line an optimiser and group of instances: quartiles of the best cost over the runs, failures
+/// counted as infinite, and the best motion's residual \[°\] and duration \[s\] where there are
+/// motions. A column for each target says how many runs reached their instance's. Costs are certified.
 pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
-    let groups = groups(runs);
+    let groups = groups(plan, runs);
+    let texts = |value: &dyn Fn(&[&Run]) -> String| -> Vec<String> {
+        groups.iter().map(|group| value(group)).collect()
+    };
     let reals = |value: &dyn Fn(&[&Run]) -> f64| -> Vec<f64> {
         groups.iter().map(|group| value(group)).collect()
     };
@@ -28,14 +31,13 @@ pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
         let best = group.iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
         best.map_or(f64::NAN, |run| value(run))
     };
-    let instance = |g: &Vec<&Run>| plan.instances[g[0].instance].label.as_str();
-    let optimiser = |g: &Vec<&Run>| plan.optimisers[g[0].optimiser].label.as_str();
-    let mut table = df!(
-        "instance" => groups.iter().map(instance).collect::<Vec<_>>(),
-        "optimiser" => groups.iter().map(optimiser).collect::<Vec<_>>(),
+    let best_cost = format!("best {}", plan.cost_symbol());
+    let mut columns = df!(
+        "instance" => texts(&|g| plan.instances[g[0].instance].group.clone()),
+        "optimiser" => texts(&|g| plan.optimisers[g[0].optimiser].label.clone()),
         "runs" => counts(&|g| g.len() as u64),
         "failed" => counts(&|g| g.iter().filter(|run| run.cost.is_infinite()).count() as u64),
-        "best J" => reals(&|g| quantile_of(g, |run| run.cost, 0.0)),
+        best_cost => reals(&|g| quantile_of(g, |run| run.cost, 0.0)),
         "quartile 1" => reals(&|g| quantile_of(g, |run| run.cost, 0.25)),
         "median" => reals(&|g| quantile_of(g, |run| run.cost, 0.5)),
         "quartile 3" => reals(&|g| quantile_of(g, |run| run.cost, 0.75)),
@@ -44,14 +46,45 @@ pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
         "evaluations" => counts(&|g| g.iter().map(|run| run.evaluations).sum()),
         "s/run" => reals(&|g| quantile_of(g, |run| run.seconds, 0.5)),
     )?;
-    for target in &plan.targets {
-        let reached = |g: &Vec<&Run>| {
-            format!("{}/{}", g.iter().filter(|run| run.cost <= *target).count(), g.len())
-        };
-        let reached: Vec<String> = groups.iter().map(reached).collect();
-        table.with_column(Column::new(format!("J ≤ {target}").into(), reached))?;
+    if !plan.instances.iter().any(Instance::is_task) {
+        columns = columns.drop_many(["residual [°]", "t_f [s]"]);
     }
-    Ok(table)
+    for column in target_columns(plan, &groups) {
+        columns.with_column(column)?;
+    }
+    Ok(columns)
+}
+
+/// One column a target; where the instances have different ones, each cell says which it is.
+fn target_columns(plan: &Plan, groups: &[Vec<&Run>]) -> Vec<Column> {
+    let symbol = plan.cost_symbol();
+    let most = plan.instances.iter().map(|instance| instance.targets.len()).max().unwrap_or(0);
+    let column = |k: usize| {
+        let target = |run: &Run| plan.instances[run.instance].targets.get(k).copied();
+        let mut distinct: Vec<f64> =
+            plan.instances.iter().filter_map(|i| i.targets.get(k).copied()).collect();
+        distinct.sort_by(f64::total_cmp);
+        distinct.dedup();
+        let cells = groups.iter().map(|group| {
+            let Some(shown) = target(group[0]) else { return String::new() };
+            let reached = |run: &&&Run| target(run).is_some_and(|target| run.cost <= target);
+            let share = format!("{}/{}", group.iter().filter(reached).count(), group.len());
+            if distinct.len() == 1 { share } else { format!("{share} ≤ {}", plain(shown)) }
+        });
+        let cells: Vec<String> = cells.collect();
+        let name = match distinct[..] {
+            [target] => format!("{symbol} ≤ {}", plain(target)),
+            _ => format!("{symbol}, target {}", k + 1),
+        };
+        Column::new(name.into(), cells)
+    };
+    (0..most).map(column).collect()
+}
+
+/// A number as given, with an exponent where it is far from one.
+fn plain(number: f64) -> String {
+    let written_out = number == 0.0 || (1e-3..1e6).contains(&number.abs());
+    if written_out { format!("{number}") } else { format!("{number:e}") }
 }
 
 fn quantile_of(group: &[&Run], value: fn(&Run) -> f64, q: f64) -> f64 {

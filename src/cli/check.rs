@@ -26,16 +26,20 @@ enum Kind {
     Task,
 }
 
+/// Keys that only an experiment has.
+const EXPERIMENT_KEYS: [&str; 7] =
+    ["name", "optimiser", "seeds", "budget", "sweep", "targets", "functions"];
+
 impl Kind {
     fn of(document: &Document) -> Result<Self, InputError> {
         let has = |keys: &[&str]| -> Result<bool, InputError> {
-            keys.iter().try_fold(false, |found, key| Ok(found || document.has_key(key)?))
+            keys.iter().try_fold(false, |found, key| Ok(found || document.key(key)?.is_some()))
         };
         Ok(if has(&["joint", "base"])? {
             Self::Robot
         } else if has(&["motion"])? {
             Self::Replay
-        } else if has(&["name", "optimiser", "seeds", "budget", "sweep", "targets"])? {
+        } else if has(&EXPERIMENT_KEYS)? {
             Self::Experiment
         } else {
             Self::Task
@@ -71,16 +75,17 @@ impl Check {
 
 #[cfg(feature = "harness")]
 fn check_experiment(document: &Document) -> Result<(), CliError> {
+    use super::run::warn_of_robot;
     use crate::experiment::{ExperimentFile, Plan};
     let file = ExperimentFile::read(document)?;
     let plan = Plan::new(&file, document)?;
-    warn_of(&plan.instances[0].problem.task().robot);
-    print_resolved("experiment", &file)?;
+    warn_of_robot(&plan);
+    let seeds = file.seeds;
+    print_resolved("experiment", &file.with_targets(&plan))?;
     let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
     say!(
-        "\n# {} runs: {instances} instances × {optimisers} optimisers × {} seeds",
-        plan.runs.len(),
-        file.seeds
+        "\n# {} runs: {instances} instances × {optimisers} optimisers × {seeds} seeds",
+        plan.runs.len()
     );
     Ok(())
 }

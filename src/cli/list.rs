@@ -1,10 +1,11 @@
 //! `driftless list`.
 
 use clap::Args;
+use schemars::schema_for;
 
 use super::CliError;
 use crate::optimiser::Settings;
-use crate::problem::{Boxes, Formulated, Formulation, Problem as _, TaskFile};
+use crate::problem::{Boxes, Formulated, Formulation, Problem as _, TaskFile, TestFunction};
 use crate::robot::Robot;
 
 /// Show optimisers, problems and robots with their settings
@@ -23,6 +24,7 @@ impl List {
             }
         }
         problems()?;
+        functions()?;
         say!("\nrobots that come with the program");
         for name in Robot::embedded_names() {
             if let Some(document) = Robot::embedded(name) {
@@ -45,6 +47,17 @@ fn problems() -> Result<(), CliError> {
         let formulated = Formulated::new(formulation, problem.clone(), &boxes);
         say!("\n  {}: {} variables", formulation.name(), formulated.bounds().len());
         say!("    {}", variables(formulation, &boxes));
+    }
+    Ok(())
+}
+
+/// The test functions with what their documentation says.
+fn functions() -> Result<(), CliError> {
+    say!("\ntest functions of two variables or more in [-5, 5], least value 0");
+    let schema = schema_for!(TestFunction);
+    for variant in schema.get("oneOf").and_then(|all| all.as_array()).into_iter().flatten() {
+        let text = |key: &str| variant.get(key).and_then(|text| text.as_str()).unwrap_or_default();
+        say!("\n  {}\n    {}", text("const"), text("description").replace('`', ""));
     }
     Ok(())
 }

@@ -13,7 +13,8 @@ use super::{CliError, read_or, shown, warn_of, watch};
 use crate::input::nearest;
 use crate::optimiser::Settings;
 use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Assessment, Formulated, TaskFile};
+use crate::problem::{Accuracy, Assessment, BestKnown, Formulated, TaskFile};
+use crate::task::TaskTable;
 
 /// Find the best motion for one task
 #[derive(Debug, Args)]
@@ -33,6 +34,9 @@ pub(super) struct Plan {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Say the motion as an entry for results/best-known.toml, too
+    #[arg(long)]
+    entry: bool,
     #[command(flatten)]
     files: MotionFiles,
 }
@@ -43,6 +47,7 @@ struct PlanJson<'a> {
     optimiser: &'a str,
     seed: u64,
     terms: usize,
+    best_known_j: Option<f64>,
     #[serde(flatten)]
     assessment: AssessmentJson,
     #[serde(flatten)]
@@ -70,7 +75,8 @@ impl Plan {
         self.files.check()?;
         let settings = find_optimiser(&self.optimiser)?;
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;
-        let (problem, boxes) = TaskFile::read(&document)?.build(&document)?;
+        let file = TaskFile::read(&document)?;
+        let (problem, boxes) = file.build(&document)?;
         warn_of(&problem.task().robot);
         let found = self.search(
             &settings,
@@ -88,8 +94,12 @@ impl Plan {
                 self.seed
             );
             say!("{told}");
+            if let Some(known) = BestKnown::of(problem) {
+                say!("  this J         {}", known.compared_with(found.assessment.cost));
+            }
             say!("  {} evaluations in {:.2} s", found.evaluations, found.seconds);
         }
+        self.say_entry(&found, file.task);
         self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
         if found.interrupted {
             return Err(CliError::Interrupted("this is the best motion so far".to_owned()));
@@ -127,6 +137,26 @@ impl Plan {
         })
     }
 
+    /// Says how the motion stands in the file of the best known: where it should, or was asked to.
+    fn say_entry(&self, found: &Found, task: TaskTable) {
+        let (problem, cost) = (found.problem.task(), found.assessment.cost);
+        let beaten = BestKnown::of(problem).filter(|known| known.is_beaten_by(cost));
+        if let Some(known) = beaten {
+            eprintln!("warning: J {cost:.9} is below the best known, {}", known.j);
+        }
+        if self.entry || beaten.is_some() {
+            let Accuracy { attitude_steps, peak_intervals } = problem.accuracy();
+            let found_by = format!(
+                "driftless plan --optimiser {} --seed {} --budget {}, attitude_steps = \
+                 {attitude_steps}, peak_intervals = {peak_intervals}",
+                self.optimiser, self.seed, self.budget
+            );
+            let (coefficients, assessment) = (&found.coefficients, &found.assessment);
+            let entry = BestKnown::new(problem, task, coefficients, assessment, found_by);
+            eprintln!("the entry for results/best-known.toml:\n\n{entry}");
+        }
+    }
+
     fn json(&self, found: &Found) -> String {
         let Found { assessment, coefficients, .. } = found;
         let family = found.problem.task().family();
@@ -135,6 +165,7 @@ impl Plan {
             optimiser: &self.optimiser,
             seed: self.seed,
             terms: family.terms(),
+            best_known_j: BestKnown::of(found.problem.task()).map(|known| known.j),
             assessment: assessment.into(),
             shape: ShapeJson::new(family, coefficients, assessment.duration),
             evaluations: found.evaluations,

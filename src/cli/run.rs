@@ -8,11 +8,13 @@ use clap::Args;
 use super::progress::Bar;
 use super::{CliError, read_or, warn_of, watch};
 use crate::analysis::{self, best_run, convergence, render, summary};
-use crate::experiment::{self, ExperimentFile, Plan, Progress, Record, RunSpec, Shard, Store};
+use crate::experiment::{
+    self, ExperimentFile, Instance, Plan, Progress, Record, RunSpec, Shard, Store,
+};
 use crate::input::Document;
 use crate::output::write_file;
 use crate::plot;
-use crate::problem::Motion;
+use crate::problem::{BestKnown, Motion};
 use crate::robot::RobotFile;
 
 /// Run an experiment: every optimiser on every instance for every seed
@@ -52,14 +54,18 @@ impl Progress for Lines<'_> {
         let optimiser = &self.plan.optimisers[run.optimiser].label;
         let instance = &self.plan.instances[run.instance].label;
         let space = if instance.is_empty() { "" } else { " " };
-        let found = if record.cost.is_finite() {
-            format!("J {:.6}", record.cost)
-        } else {
-            "no motion".to_owned()
+        let found = match record.cost {
+            cost if !cost.is_finite() => "nothing found".to_owned(),
+            cost if self.plan.instances[run.instance].is_task() => format!("J {cost:.6}"),
+            cost => format!("f {cost:.3e}"),
         };
-        let status = record.status.name();
-        self.bar
-            .line(&format!("{optimiser}{space}{instance} seed {}: {found}, {status}", run.seed));
+        let (status, message) = (record.status.name(), record.status.message());
+        let (warning, colon) = if message.is_empty() { ("", "") } else { ("warning: ", ": ") };
+        let message = message.lines().next().unwrap_or_default();
+        self.bar.line(&format!(
+            "{warning}{optimiser}{space}{instance} seed {}: {found}, {status}{colon}{message}",
+            run.seed
+        ));
     }
 }
 
@@ -71,10 +77,10 @@ impl Run {
         let budget = self.budget.and_then(NonZeroU64::new);
         file.budget.evaluations = budget.unwrap_or(file.budget.evaluations);
         let plan = Plan::new(&file, &document)?;
-        warn_of(&plan.instances[0].problem.task().robot);
+        warn_of_robot(&plan);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
         let store = Store::open(&folder)?;
-        keep_inputs(file, &document, &folder)?;
+        keep_inputs(file.with_targets(&plan), &document, &folder)?;
         self.run_missing(&plan, &store, &folder)?;
         report(&plan, &store, &folder)
     }
@@ -115,10 +121,11 @@ fn keep_inputs(
     document: &Document,
     folder: &Path,
 ) -> Result<(), CliError> {
-    if let Some(path) = file.task.robot_file(document) {
+    let robot = file.task.as_ref().and_then(|task| task.robot_file(document));
+    if let Some(path) = robot {
         let robot = RobotFile::read(&Document::read(&path)?)?;
         write_file(&folder.join("robot.toml"), toml::to_string(&robot)?.as_bytes())?;
-        file.task = file.task.with_robot("robot.toml");
+        file.task = file.task.map(|task| task.with_robot("robot.toml"));
     }
     let (path, text) = (folder.join("experiment.toml"), toml::to_string(&file)?);
     if std::fs::read_to_string(&path).is_ok_and(|before| before != text) {
@@ -141,13 +148,19 @@ fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
     say!("{}", render(&summary(plan, &runs)?)?);
     let figures = folder.join("figures");
     let curves = convergence(plan, &runs, &store.read("traces", keys())?)?;
-    plot::convergence(&curves).save(&figures, "convergence")?;
+    plot::convergence(&curves, plan.cost_symbol()).save(&figures, "convergence")?;
     for (i, instance) in plan.instances.iter().enumerate() {
-        let Some(best) = best_run(runs.iter().filter(|run| run.instance == i)) else { continue };
+        let (Some(problem), Some(best)) =
+            (instance.reorientation(), best_run(runs.iter().filter(|run| run.instance == i)))
+        else {
+            continue;
+        };
         let optimiser = &plan.optimisers[best.optimiser].label;
+        let known = BestKnown::of(problem)
+            .map_or_else(String::new, |known| format!(" ({})", known.compared_with(best.cost)));
         let on = if instance.label.is_empty() { "" } else { " for " };
         say!(
-            "best motion{on}{}: {optimiser}, seed {}: J {:.6}, t_f {:.4} s",
+            "best motion{on}{}: {optimiser}, seed {}: J {:.6}{known}, t_f {:.4} s",
             instance.label,
             best.seed,
             best.cost,
@@ -155,14 +168,24 @@ fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
         );
         // Costs of different instances do not compare, so there is no best of all to draw.
         if plan.instances.len() == 1 {
-            let problem = &instance.problem;
             let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
             plot::write_motion_figures(&figures, &motion, problem.task())?;
         }
     }
     say!("results: {}, figures: {}", folder.display(), figures.display());
     let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
-    if failed > 0 && failed == runs.len() { Err(CliError::NoMotion) } else { Ok(()) }
+    if failed > 0 {
+        eprintln!("warning: {failed} of {} runs failed or found nothing", runs.len());
+    }
+    Ok(())
+}
+
+/// Says what is unphysical about an experiment's robot.
+pub(super) fn warn_of_robot(plan: &Plan) {
+    // A sweep has one robot.
+    if let Some(problem) = plan.instances.iter().find_map(Instance::reorientation) {
+        warn_of(&problem.task().robot);
+    }
 }
 
 fn default_jobs() -> usize {

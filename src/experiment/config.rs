@@ -6,7 +6,8 @@ use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use crate::input::{Document, Finite, Fraction, InputError, Positive, count};
+use super::{FunctionTable, Plan, Targets, functions};
+use crate::input::{Document, Fraction, InputError, Positive, count};
 use crate::optimiser::Settings;
 use crate::problem::{DEFAULTS as TASK_DEFAULTS, TrajectoryTable};
 use crate::task::TaskTable;
@@ -25,16 +26,23 @@ pub struct ExperimentFile {
     pub seeds: NonZeroU64,
     /// What each run may spend.
     pub budget: BudgetTable,
-    /// Costs whose success rate the summary shows.
-    pub targets: Vec<Finite>,
-    /// The task that the sweep varies.
-    pub task: TaskTable,
-    /// The family to search and how.
-    pub trajectory: TrajectoryTable,
+    /// Costs whose success rate the summary shows; by default they follow the best known costs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub targets: Option<Spanned<Targets>>,
+    /// The task that the sweep varies; none beside functions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub task: Option<TaskTable>,
+    /// The family to search and how; none beside functions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trajectory: Option<TrajectoryTable>,
     /// What is varied.
+    #[serde(default, skip_serializing_if = "Sweep::is_empty")]
     pub sweep: Sweep,
+    /// Test functions instead of the task.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub functions: Option<FunctionTable>,
     /// The field.
-    pub optimiser: Spanned<Vec<Settings>>,
+    pub optimiser: Spanned<Vec<Spanned<Settings>>>,
 }
 
 /// The `budget` table.
@@ -47,7 +55,7 @@ pub struct BudgetTable {
 }
 
 /// The `[sweep]` table: the instances are the cross product of its lists.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct Sweep {
     /// `K_b`.
@@ -67,15 +75,35 @@ pub struct Sweep {
     pub terms: Vec<Spanned<usize>>,
 }
 
+impl Sweep {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 impl ExperimentFile {
-    /// Reads an experiment; the task it leaves out is the paper's.
+    /// Reads an experiment; the task it leaves out is the paper's, unless it has functions instead.
     pub fn read(document: &Document) -> Result<Self, InputError> {
-        let file: Self = document.parse_over(&[DEFAULTS, TASK_DEFAULTS])?;
+        let on_functions = document.key("functions")?.is_some();
+        for key in ["task", "trajectory", "sweep"] {
+            if let (true, Some(place)) = (on_functions, document.key(key)?) {
+                let message = format!("found both `functions` and `{key}`, expected one of them");
+                return Err(document.error_at(place, message, None));
+            }
+        }
+        let problem = if on_functions { functions::DEFAULTS } else { TASK_DEFAULTS };
+        let file: Self = document.parse_over(&[DEFAULTS, problem])?;
         if file.optimiser.get_ref().is_empty() {
             let message = "found no optimiser, expected at least one `[[optimiser]]`";
             return Err(document.error_at(file.optimiser.span(), message, None));
         }
         Ok(file)
+    }
+
+    /// The same file with the targets that the plan has, wherever they came from.
+    #[must_use]
+    pub fn with_targets(self, plan: &Plan) -> Self {
+        Self { targets: Some(Spanned::new(0..0, Targets::of(&plan.instances))), ..self }
     }
 
     /// The experiment that runs when none is named.

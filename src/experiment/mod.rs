@@ -1,13 +1,21 @@
 //! From an experiment file to stored runs: config, plan, runner, store.
 
+mod caught;
 mod config;
+mod functions;
+mod instance;
 mod plan;
 mod record;
 mod runner;
 mod store;
+mod sweep;
+mod targets;
 
 pub use config::{BudgetTable, ExperimentFile, Sweep};
-pub use plan::{Entrant, Instance, Plan, RunSpec, Shard};
+pub use functions::{Dimension, FunctionTable};
+pub use instance::{Instance, Subject};
+pub use plan::{Entrant, Plan, RunSpec, Shard};
 pub use record::{Record, Status};
 pub use runner::{Progress, RunError, run};
 pub use store::{Store, StoreError, write_table};
+pub use targets::Targets;

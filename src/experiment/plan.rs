@@ -1,17 +1,18 @@
 //! An experiment spelt out: every instance, every run, every key.
 
 use std::collections::{HashMap, HashSet};
-use std::fmt::Write as _;
+use std::num::NonZeroU64;
 use std::str::FromStr;
-use std::sync::Arc;
 
 use serde::Serialize;
-use sha2::{Digest, Sha256};
+use toml::Spanned;
 
-use super::ExperimentFile;
-use crate::input::{Document, InputError, Positive};
+use super::record::FORMAT;
+use super::{ExperimentFile, Instance, Subject, Targets, sweep};
+use crate::digest::digest;
+use crate::input::{Document, InputError};
 use crate::optimiser::Settings;
-use crate::problem::{Accuracy, Boxes, Formulated, Reorientation};
+use crate::problem::{Accuracy, Boxes};
 use crate::task::Task;
 
 /// Raised when a change makes the same run give another result.
@@ -22,8 +23,6 @@ const PROBLEM_VERSION: u32 = 1;
 pub struct Plan {
     /// The experiment's name.
     pub name: String,
-    /// Costs whose success rate is asked for.
-    pub targets: Vec<f64>,
     /// The instances.
     pub instances: Vec<Instance>,
     /// The field.
@@ -32,21 +31,11 @@ pub struct Plan {
     pub runs: Vec<RunSpec>,
 }
 
-/// One point of the sweep.
-#[derive(Debug, Clone)]
-pub struct Instance {
-    /// What the sweep set, such as `weight_base=0.5 terms=4`; empty without a sweep.
-    pub label: String,
-    /// The problem.
-    pub problem: Arc<Reorientation>,
-    /// Where to search.
-    pub boxes: Boxes,
-}
-
 /// One optimiser of the field.
 #[derive(Debug, Clone)]
 pub struct Entrant {
-    /// Optimiser and formulation, with changed settings where the field has both more than once.
+    /// Optimiser and, on the task, formulation; with changed settings where the field has these more
+    /// than once.
     pub label: String,
     /// The settings.
     pub settings: Settings,
@@ -99,43 +88,95 @@ impl Shard {
 impl Plan {
     /// Spells an experiment out. Two runs that would be the same are a mistake.
     pub fn new(file: &ExperimentFile, document: &Document) -> Result<Self, InputError> {
-        let task = file.task.build(document)?;
-        let instances = instances(file, &task, document)?;
-        let optimisers = entrants(file.optimiser.get_ref());
-        let budget = file.budget.evaluations.get();
-        let mut runs = Vec::new();
-        for (i, instance) in instances.iter().enumerate() {
-            for (o, entrant) in optimisers.iter().enumerate() {
-                runs.extend((1..=file.seeds.get()).map(|seed| {
-                    let recipe = recipe(instance, &entrant.settings, seed, budget);
-                    RunSpec { key: hash(&recipe), recipe, instance: i, optimiser: o, seed, budget }
-                }));
+        let mut instances = match file {
+            ExperimentFile { functions: Some(functions), .. } => {
+                check_field(file.optimiser.get_ref(), document)?;
+                functions.instances(document)?
             }
+            ExperimentFile { task: Some(task), trajectory: Some(trajectory), sweep, .. } => {
+                sweep::instances(task, trajectory, sweep, document)?
+            }
+            // Reading a file fills in what it leaves out.
+            _ => Vec::new(),
+        };
+        if let Some(targets) = &file.targets {
+            Targets::give(targets, &mut instances, document)?;
         }
+        let field: Vec<Settings> =
+            file.optimiser.get_ref().iter().map(|settings| settings.get_ref().clone()).collect();
+        let plan = Self::over(&file.name, instances, &field, file.seeds, file.budget.evaluations);
         let mut keys = HashSet::new();
-        if let Some(twin) = runs.iter().find(|run| !keys.insert(&run.key)) {
+        if let Some(twin) = plan.runs.iter().find(|run| !keys.insert(&run.key)) {
             let message = format!(
-                "{} stands twice with the same settings, or a list of the sweep repeats a value",
-                optimisers[twin.optimiser].label
+                "{} stands twice with the same settings, or a list of the sweep or of the functions repeats a value",
+                plan.optimisers[twin.optimiser].label
             );
             return Err(document.error_at(file.optimiser.span(), message, None));
         }
-        let targets = file.targets.iter().map(|target| target.0).collect();
-        Ok(Self { name: file.name.clone(), targets, instances, optimisers, runs })
+        Ok(plan)
     }
 
-    /// The problem as a run's optimiser sees it.
-    pub fn problem(&self, run: &RunSpec) -> Formulated {
-        let instance = &self.instances[run.instance];
-        let formulation = self.optimisers[run.optimiser].settings.formulation();
-        Formulated::new(formulation, instance.problem.clone(), &instance.boxes)
+    /// Every optimiser of the field on every instance, for seeds 1, 2, … up to `seeds`, with `budget`
+    /// evaluations a run.
+    pub fn over(
+        name: &str,
+        instances: Vec<Instance>,
+        field: &[Settings],
+        seeds: NonZeroU64,
+        budget: NonZeroU64,
+    ) -> Self {
+        let budget = budget.get();
+        let optimisers = entrants(field, instances.iter().any(Instance::is_task));
+        let mut runs = Vec::new();
+        for (i, instance) in instances.iter().enumerate() {
+            for (o, entrant) in optimisers.iter().enumerate() {
+                runs.extend((1..=seeds.get()).map(|seed| {
+                    let recipe = recipe(instance, &entrant.settings, seed, budget);
+                    RunSpec {
+                        key: digest(&recipe),
+                        recipe,
+                        instance: i,
+                        optimiser: o,
+                        seed,
+                        budget,
+                    }
+                }));
+            }
+        }
+        Self { name: name.to_owned(), instances, optimisers, runs }
+    }
+
+    /// The letter for costs: the paper's `J` where its task is among the instances.
+    pub fn cost_symbol(&self) -> &'static str {
+        if self.instances.iter().any(Instance::is_task) { "J" } else { "f" }
     }
 }
 
-/// Labels the field: optimiser and formulation, with the settings that differ from the default where
-/// the field has both more than once.
-fn entrants(field: &[Settings]) -> Vec<Entrant> {
-    let plain = |s: &Settings| format!("{}/{}", s.name(), s.formulation().name());
+/// Whether every optimiser of a field can search test functions: those have no derivatives, and
+/// none of the task's formulations.
+fn check_field(field: &[Spanned<Settings>], document: &Document) -> Result<(), InputError> {
+    for spanned in field {
+        let settings = spanned.get_ref();
+        let name = settings.name();
+        let default = Settings::by_name(name).map(|default| default.formulation());
+        let message = if settings.optimiser().needs_derivatives() {
+            format!("`{name}` needs derivatives, which test functions do not give")
+        } else if default != Some(settings.formulation()) {
+            "found a formulation, which only the reorientation task has".to_owned()
+        } else {
+            continue;
+        };
+        return Err(document.error_at(spanned.span(), message, None));
+    }
+    Ok(())
+}
+
+/// Labels the field: optimiser and, on the task, formulation, with the settings that differ from the
+/// default where the field has these more than once.
+fn entrants(field: &[Settings], on_task: bool) -> Vec<Entrant> {
+    let plain = |s: &Settings| {
+        if on_task { format!("{}/{}", s.title(), s.formulation().name()) } else { s.title() }
+    };
     let mut count = HashMap::new();
     for settings in field {
         *count.entry(plain(settings)).or_insert(0) += 1;
@@ -148,97 +189,41 @@ fn entrants(field: &[Settings]) -> Vec<Entrant> {
     field.iter().map(|s| Entrant { label: label(s), settings: s.clone() }).collect()
 }
 
-/// The cross product of the sweep's lists.
-fn instances(
-    file: &ExperimentFile,
-    task: &Task,
-    document: &Document,
-) -> Result<Vec<Instance>, InputError> {
-    /// A task on its way through the lists, with what they have set so far.
-    #[derive(Clone)]
-    struct Draft {
-        label: String,
-        task: Task,
-        terms: toml::Spanned<usize>,
-    }
-    /// Every draft with every value of one list; a list without values leaves the drafts alone.
-    fn cross<T>(
-        drafts: Vec<Draft>,
-        name: &str,
-        values: &[T],
-        set: impl Fn(&mut Draft, &T) -> String,
-    ) -> Vec<Draft> {
-        if values.is_empty() {
-            return drafts;
-        }
-        let with = |draft: &Draft, value: &T| {
-            let mut draft = draft.clone();
-            let shown = set(&mut draft, value);
-            let space = if draft.label.is_empty() { "" } else { " " };
-            let _ = write!(draft.label, "{space}{name}={shown}");
-            draft
-        };
-        drafts.iter().flat_map(|draft| values.iter().map(|value| with(draft, value))).collect()
-    }
-    let limit = |order: usize| {
-        move |draft: &mut Draft, limit: &Positive| {
-            draft.task.limits.0.iter_mut().for_each(|l| l[order] = limit.0.to_radians());
-            limit.0.to_string()
-        }
-    };
-    let sweep = &file.sweep;
-    let terms = file.trajectory.terms().clone();
-    let mut drafts = vec![Draft { label: String::new(), task: task.clone(), terms }];
-    drafts = cross(drafts, "weight_base", &sweep.weight_base, |draft, weight| {
-        draft.task.base_weight = weight.0;
-        weight.0.to_string()
-    });
-    drafts = cross(drafts, "rate_limit_deg_s", &sweep.rate_limit_deg_s, limit(0));
-    drafts = cross(drafts, "acceleration_limit_deg_s2", &sweep.acceleration_limit_deg_s2, limit(1));
-    drafts = cross(drafts, "jerk_limit_deg_s3", &sweep.jerk_limit_deg_s3, limit(2));
-    drafts = cross(drafts, "terms", &sweep.terms, |draft, terms| {
-        draft.terms = terms.clone();
-        terms.get_ref().to_string()
-    });
-    let build = |draft: Draft| {
-        let table = file.trajectory.with_terms(draft.terms);
-        let (problem, boxes) = table.build(Arc::new(draft.task), document)?;
-        Ok(Instance { label: draft.label, problem: Arc::new(problem), boxes })
-    };
-    drafts.into_iter().map(build).collect()
-}
-
 /// Everything that determines a run's result, as JSON.
 #[expect(clippy::expect_used, reason = "plain data has a JSON form")]
 fn recipe(instance: &Instance, settings: &Settings, seed: u64, budget: u64) -> String {
     #[derive(Serialize)]
     struct Recipe<'a> {
         version: u32,
-        task: &'a Task,
-        terms: usize,
-        accuracy: Accuracy,
-        boxes: &'a Boxes,
+        format: u64,
+        #[serde(flatten)]
+        subject: Identity<'a>,
         optimiser: &'a Settings,
         seed: u64,
         evaluations: u64,
     }
+    #[derive(Serialize)]
+    #[serde(untagged)]
+    enum Identity<'a> {
+        Task { task: &'a Task, terms: usize, accuracy: Accuracy, boxes: &'a Boxes },
+        Other { problem: &'a str, instance: &'a str },
+    }
+    let subject = match &instance.subject {
+        Subject::Task { problem, boxes } => Identity::Task {
+            task: problem.task(),
+            terms: problem.family().terms(),
+            accuracy: problem.accuracy(),
+            boxes,
+        },
+        Subject::Other { name, .. } => Identity::Other { problem: name, instance: &instance.label },
+    };
     let recipe = Recipe {
         version: PROBLEM_VERSION,
-        task: instance.problem.task(),
-        terms: instance.problem.family().terms(),
-        accuracy: instance.problem.accuracy(),
-        boxes: &instance.boxes,
+        format: FORMAT,
+        subject,
         optimiser: settings,
         seed,
         evaluations: budget,
     };
     serde_json::to_string(&recipe).expect("a recipe is plain data")
-}
-
-/// The first 16 hexadecimal digits of a text's SHA-256.
-fn hash(text: &str) -> String {
-    Sha256::digest(text).iter().take(8).fold(String::new(), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
 }

@@ -1,6 +1,5 @@
 //! What is kept of a run, and the columns it is kept in.
 
-use std::any::Any;
 use std::time::Duration;
 
 use chrono::Utc;
@@ -8,7 +7,8 @@ use polars::prelude::*;
 
 use super::{Plan, RunSpec};
 use crate::oracle::{Oracle, Stop, TracePoint};
-use crate::problem::{Assessment, Evaluation};
+use crate::problem::Assessment;
+use crate::task::Task;
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,25 +17,21 @@ pub enum Status {
     Finished,
     /// Every evaluation was spent.
     BudgetSpent,
-    /// The optimiser or the problem panicked.
+    /// The optimiser needs derivatives that the problem does not have.
+    NoDerivatives,
+    /// The optimiser or the problem panicked; what the panic said and where.
     Panicked(String),
 }
 
 impl Status {
     /// What to record; nothing for a run that the user interrupted.
-    pub(super) fn from_outcome(
-        outcome: Result<Result<(), Stop>, Box<dyn Any + Send>>,
-    ) -> Option<Self> {
+    pub(super) fn from_outcome(outcome: Result<Result<(), Stop>, String>) -> Option<Self> {
         match outcome {
             Ok(Ok(())) => Some(Self::Finished),
             Ok(Err(Stop::BudgetSpent)) => Some(Self::BudgetSpent),
-            Ok(Err(stop @ Stop::NoDerivatives)) => Some(Self::Panicked(stop.to_string())),
+            Ok(Err(Stop::NoDerivatives)) => Some(Self::NoDerivatives),
             Ok(Err(Stop::Interrupted)) => None,
-            Err(payload) => {
-                let message = payload.downcast_ref::<String>().map(String::as_str);
-                let message = message.or_else(|| payload.downcast_ref::<&str>().copied());
-                Some(Self::Panicked(message.unwrap_or("no message").to_owned()))
-            }
+            Err(panic) => Some(Self::Panicked(panic)),
         }
     }
 
@@ -44,7 +40,22 @@ impl Status {
         match self {
             Self::Finished => "finished",
             Self::BudgetSpent => "budget-spent",
+            Self::NoDerivatives => "no-derivatives",
             Self::Panicked(_) => "panicked",
+        }
+    }
+
+    /// Whether a run with this word in its `status` column came to an end that it should not.
+    pub fn is_failure(name: &str) -> bool {
+        ["no-derivatives", "panicked"].contains(&name)
+    }
+
+    /// What there is to say beyond the word; empty for most.
+    pub fn message(&self) -> String {
+        match self {
+            Self::NoDerivatives => Stop::NoDerivatives.to_string(),
+            Self::Panicked(message) => message.clone(),
+            Self::Finished | Self::BudgetSpent => String::new(),
         }
     }
 }
@@ -54,7 +65,7 @@ impl Status {
 pub struct Record {
     /// The run's key.
     pub key: String,
-    /// Best cost, certified; NaN when there is none.
+    /// Best cost, certified where there is a motion to certify; NaN when there is none.
     pub cost: f64,
     /// How the run ended.
     pub status: Status,
@@ -66,28 +77,27 @@ pub struct Record {
     pub(super) clock: DataFrame,
 }
 
-/// The best point of a run: as the search evaluated it, and its motion, certified.
-pub(super) type BestFound = (Evaluation, (Vec<f64>, Assessment));
+/// A run that has just ended.
+pub(super) struct Ended<'a> {
+    pub(super) status: Status,
+    /// The best point's motion, certified: its coefficients and what is known of it.
+    pub(super) motion: Option<(Vec<f64>, Assessment)>,
+    pub(super) seconds: Duration,
+    pub(super) oracle: Oracle<'a>,
+}
 
 /// Version of the stored tables; raised when a column changes.
-const FORMAT: u64 = 1;
+pub(super) const FORMAT: u64 = 2;
 
 impl Record {
-    pub(super) fn new(
-        plan: &Plan,
-        run: &RunSpec,
-        status: Status,
-        best: Option<BestFound>,
-        seconds: Duration,
-        oracle: Oracle<'_>,
-    ) -> PolarsResult<Self> {
-        let cost = best.as_ref().map_or(f64::NAN, |(_, (_, certified))| certified.cost);
-        let row = row(plan, run, &status, best, seconds, &oracle)?;
-        let trace = oracle.into_trace();
+    pub(super) fn new(plan: &Plan, run: &RunSpec, ended: Ended<'_>) -> PolarsResult<Self> {
+        let cost = ended.cost(plan, run);
+        let row = row(plan, run, cost, &ended)?;
+        let trace = ended.oracle.into_trace();
         Ok(Self {
             key: run.key.clone(),
-            cost,
-            status,
+            cost: cost.unwrap_or(f64::NAN),
+            status: ended.status,
             row,
             clock: clock_table(&run.key, &trace)?,
             trace: trace_table(&run.key, &trace)?,
@@ -95,58 +105,61 @@ impl Record {
     }
 }
 
-/// The `runs` table. Costs are `J`; angles are in degrees, all else in SI units.
+impl Ended<'_> {
+    /// The best cost: the certified motion's, or the search's own where there are no motions.
+    fn cost(&self, plan: &Plan, run: &RunSpec) -> Option<f64> {
+        if plan.instances[run.instance].is_task() {
+            self.motion.as_ref().map(|(_, certified)| certified.cost)
+        } else {
+            self.oracle.best().map(|best| best.evaluation.cost)
+        }
+    }
+}
+
+/// The `runs` table. Angles are in degrees, all else in SI units; what only a task has is null for
+/// other problems.
 fn row(
     plan: &Plan,
     run: &RunSpec,
-    status: &Status,
-    best: Option<BestFound>,
-    seconds: Duration,
-    oracle: &Oracle<'_>,
+    cost: Option<f64>,
+    ended: &Ended<'_>,
 ) -> PolarsResult<DataFrame> {
+    let Ended { status, motion, seconds, oracle } = ended;
     let entrant = &plan.optimisers[run.optimiser];
     let instance = &plan.instances[run.instance];
-    let task = instance.problem.task();
+    let problem = instance.reorientation();
+    let task = problem.map(|problem| &**problem.task());
     let settings = serde_json::to_string(&entrant.settings).unwrap_or_default();
-    let message = if let Status::Panicked(message) = status { message.as_str() } else { "" };
-    let (search, certified, coefficients) = match best {
-        Some((evaluation, (coefficients, assessment))) => {
-            (Some(evaluation), Some(assessment), coefficients)
-        }
-        None => (None, None, Vec::new()),
-    };
-    let found = |value: fn(&Assessment) -> f64| certified.as_ref().map(value);
-    // The same limit for all joints, or none to show.
-    let limit = |order: usize| {
-        let first = task.limits.0[0][order];
-        let uniform = task.limits.0.iter().all(|l| l[order] == first);
-        // Degrees as written, without the rounding of their way through radians.
-        uniform.then(|| (first.to_degrees() * 1e9).round() / 1e9)
-    };
+    let best = oracle.best();
+    let found = |value: fn(&Assessment) -> f64| motion.as_ref().map(|(_, motion)| value(motion));
+    let limit = |order: usize| task.and_then(|task| uniform_limit_deg(task, order));
     df!(
         "format" => [FORMAT],
         "key" => [run.key.as_str()],
         "recipe" => [run.recipe.as_str()],
         "experiment" => [plan.name.as_str()],
-        "optimiser" => [entrant.label.as_str()],
-        "formulation" => [entrant.settings.formulation().name()],
-        "settings" => [settings],
+        "problem" => [instance.subject.name()],
         "instance" => [instance.label.as_str()],
-        "robot" => [task.robot.name.as_str()],
-        "weight_base" => [task.base_weight],
+        "optimiser" => [entrant.label.as_str()],
+        "formulation" => [problem.map(|_| entrant.settings.formulation().name())],
+        "settings" => [settings],
+        "robot" => [task.map(|task| task.robot.name.as_str())],
+        "weight_base" => [task.map(|task| task.base_weight)],
         "rate_limit_deg_s" => [limit(0)],
         "acceleration_limit_deg_s2" => [limit(1)],
         "jerk_limit_deg_s3" => [limit(2)],
-        "terms" => [instance.problem.family().terms() as u64],
+        "terms" => [problem.map(|problem| problem.family().terms() as u64)],
+        "targets" => list(Some(&instance.targets)),
         "seed" => [run.seed],
         "budget" => [run.budget],
-        "j" => [search.map(|e| e.cost)],
-        "violation" => [search.map(|e| e.violation)],
-        "certified_j" => [found(|a| a.cost)],
+        "j" => [best.map(|best| best.evaluation.cost)],
+        "violation" => [best.map(|best| best.evaluation.violation)],
+        "x" => list(best.map(|best| &best.x)),
+        "certified_j" => [cost],
         "residual_deg" => [found(|a| a.residual().to_degrees())],
         "t_f" => [found(|a| a.duration)],
         "penalty" => [found(Assessment::penalty)],
-        "coefficients" => [Series::new("".into(), coefficients)],
+        "coefficients" => list(motion.as_ref().map(|(coefficients, _)| coefficients)),
         "evaluations" => [oracle.evaluations()],
         "linearisations" => [oracle.linearisations()],
         "conic_solves" => [oracle.conic_solves()],
@@ -154,11 +167,28 @@ fn row(
         "seconds" => [seconds.as_secs_f64()],
         "seconds_in_problem" => [oracle.time_in_problem().as_secs_f64()],
         "status" => [status.name()],
-        "message" => [message],
+        "message" => [status.message()],
         "version" => [env!("CARGO_PKG_VERSION")],
         "commit" => [git_version::git_version!(args = ["--always", "--dirty"], fallback = "unknown")],
         "date" => [Utc::now().to_rfc3339()],
     )
+}
+
+/// The same limit for all joints, or none to show. Degrees as written, without the rounding of their
+/// way through radians.
+fn uniform_limit_deg(task: &Task, order: usize) -> Option<f64> {
+    let first = task.limits.0[0][order];
+    let uniform = task.limits.0.iter().all(|limits| limits[order] == first);
+    uniform.then(|| (first.to_degrees() * 1e9).round() / 1e9)
+}
+
+/// One cell that holds a list of numbers, or null.
+fn list(values: Option<&Vec<f64>>) -> Series {
+    let size = values.map_or(0, Vec::len);
+    let mut cell =
+        ListPrimitiveChunkedBuilder::<Float64Type>::new("".into(), 1, size, DataType::Float64);
+    cell.append_opt_slice(values.map(Vec::as_slice));
+    cell.finish().into_series()
 }
 
 /// The `traces` table: improvements and the last evaluation. It holds no wall time, so that equal

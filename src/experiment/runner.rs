@@ -1,10 +1,11 @@
 //! Runs what is missing, on as many threads as asked for.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
 use rayon::prelude::*;
 
+use super::caught::caught;
+use super::record::Ended;
 use super::{Plan, Record, RunSpec, Status, Store, StoreError};
 use crate::oracle::{Oracle, Rng, Watch};
 
@@ -17,7 +18,7 @@ pub trait Progress: Sync {
 /// Does those of `runs` that the store does not have, on `jobs` threads.
 ///
 /// What a run gives does not depend on the other runs. A run that the user interrupts leaves
-/// nothing behind; one that fails leaves a record that says so.
+/// nothing behind; one that fails, be it by a panic, leaves a record that says so.
 pub fn run(
     plan: &Plan,
     runs: &[&RunSpec],
@@ -55,24 +56,24 @@ fn one(plan: &Plan, run: &RunSpec, watch: &Watch) -> Result<Option<Record>, Stor
     if watch.is_interrupted() {
         return Ok(None);
     }
-    let problem = plan.problem(run);
-    let optimiser = plan.optimisers[run.optimiser].settings.optimiser();
-    let mut oracle = Oracle::new(&problem, run.budget, watch);
+    let instance = &plan.instances[run.instance];
+    let settings = &plan.optimisers[run.optimiser].settings;
+    let problem = instance.problem(settings.formulation());
+    let mut oracle = Oracle::new(&*problem, run.budget, watch);
     let started = Instant::now();
-    let searched =
-        catch_unwind(AssertUnwindSafe(|| optimiser.minimise(&mut oracle, &mut Rng::new(run.seed))));
+    let mut outcome =
+        caught(|| settings.optimiser().minimise(&mut oracle, &mut Rng::new(run.seed)));
     let seconds = started.elapsed();
-    let certified = catch_unwind(AssertUnwindSafe(|| {
-        oracle.best().map(|best| (best.evaluation, problem.certify(&best.x)))
-    }));
-    let (outcome, best) = match certified {
-        Ok(best) => (searched, best),
-        Err(panic) => (Err(panic), None),
-    };
+    let best = oracle.best();
+    let motion = caught(|| best.and_then(|b| instance.certify(settings.formulation(), &b.x)));
+    let motion = motion.unwrap_or_else(|panic| {
+        outcome = Err(panic);
+        None
+    });
     let Some(status) = Status::from_outcome(outcome) else {
         return Ok(None);
     };
     // What the run did not spend will not be spent.
     watch.add_evaluations(oracle.remaining());
-    Ok(Some(Record::new(plan, run, status, best, seconds, oracle)?))
+    Ok(Some(Record::new(plan, run, Ended { status, motion, seconds, oracle })?))
 }

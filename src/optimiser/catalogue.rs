@@ -3,19 +3,59 @@
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
-use super::{Optimiser, Pso, RandomSearch, Scp};
+use super::{CmaEs, De, Hybrid, LShade, NelderMead, Optimiser, Pso, RandomSearch, Scp};
 use crate::problem::Formulation;
 
-/// One optimiser and its settings, as an `[[optimiser]]` table says it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Settings {
+/// From one line an optimiser: the choice of one with its settings, and what has to be known of each.
+macro_rules! catalogue {
+    ($($(#[$about:meta])* $name:literal: $settings:ident,)*) => {
+        /// One optimiser and its settings, as an `[[optimiser]]` table says it.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+        pub enum Settings {
+            $($(#[$about])* #[serde(rename = $name)] $settings($settings),)*
+        }
+
+        impl Settings {
+            /// Every optimiser with its default settings.
+            pub fn all() -> Vec<Self> {
+                vec![$(Self::$settings($settings::default())),*]
+            }
+
+            /// The optimiser's name.
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$settings(_) => $name,)* }
+            }
+
+            /// The optimiser itself.
+            pub fn optimiser(&self) -> &dyn Optimiser {
+                match self { $(Self::$settings(settings) => settings,)* }
+            }
+
+            /// The settings' JSON schema.
+            fn schema(&self) -> schemars::Schema {
+                match self { $(Self::$settings(_) => schema_for!($settings),)* }
+            }
+        }
+    };
+}
+
+catalogue! {
+    /// Evolution strategy with covariance matrix adaptation, restarted with a growing population.
+    "cma-es": CmaEs,
+    /// Differential evolution.
+    "de": De,
+    /// Another optimiser, then sequential convex programming from the best it found.
+    "hybrid": Hybrid,
+    /// Differential evolution that adapts its parameters and shrinks its population.
+    "l-shade": LShade,
+    /// The simplex method, from random starts.
+    "nelder-mead": NelderMead,
     /// The paper's particle swarm.
-    Pso(Pso),
+    "pso": Pso,
     /// Random search.
-    Random(RandomSearch),
+    "random": RandomSearch,
     /// Sequential convex programming from random starts.
-    Scp(Scp),
+    "scp": Scp,
 }
 
 /// A setting as `list` shows it.
@@ -30,46 +70,22 @@ pub struct Setting {
 }
 
 impl Settings {
-    /// Every optimiser with its default settings.
-    pub fn all() -> Vec<Self> {
-        vec![
-            Self::Pso(Pso::default()),
-            Self::Random(RandomSearch::default()),
-            Self::Scp(Scp::default()),
-        ]
-    }
-
     /// The optimiser of that name with its default settings.
     pub fn by_name(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|settings| settings.name() == name)
     }
 
-    /// The optimiser's name.
-    pub fn name(&self) -> &'static str {
+    /// What to call it in tables: its name or, of a hybrid, those of its parts.
+    pub fn title(&self) -> String {
         match self {
-            Self::Pso(_) => "pso",
-            Self::Random(_) => "random",
-            Self::Scp(_) => "scp",
+            Self::Hybrid(hybrid) => format!("{}+scp", hybrid.search.title()),
+            plain => plain.name().to_owned(),
         }
     }
 
     /// In which variables it searches.
     pub fn formulation(&self) -> Formulation {
-        match self {
-            Self::Pso(pso) => pso.formulation,
-            Self::Random(random) => random.formulation,
-            // The only one with derivatives.
-            Self::Scp(_) => Formulation::TimeFree,
-        }
-    }
-
-    /// The optimiser itself.
-    pub fn optimiser(&self) -> &dyn Optimiser {
-        match self {
-            Self::Pso(pso) => pso,
-            Self::Random(random) => random,
-            Self::Scp(scp) => scp,
-        }
+        self.optimiser().formulation()
     }
 
     /// The settings that differ from the default, as `name=value`; the formulation is left out.
@@ -89,11 +105,7 @@ impl Settings {
 
     /// Every setting with its default and its meaning, from the documentation of its field.
     pub fn describe(&self) -> Vec<Setting> {
-        let schema = match self {
-            Self::Pso(_) => schema_for!(Pso),
-            Self::Random(_) => schema_for!(RandomSearch),
-            Self::Scp(_) => schema_for!(Scp),
-        };
+        let schema = self.schema();
         let properties = schema.get("properties").and_then(|p| p.as_object());
         properties
             .into_iter()

@@ -1,17 +1,29 @@
 //! Optimisers: plain control flow over an [`Oracle`].
 
 mod catalogue;
+mod cma_es;
 mod conic;
+mod de;
+mod hybrid;
+mod l_shade;
+mod nelder_mead;
+mod population;
 mod pso;
 mod random;
 mod scp;
 
 pub use catalogue::{Setting, Settings};
+pub use cma_es::CmaEs;
+pub use de::De;
+pub use hybrid::Hybrid;
+pub use l_shade::LShade;
+pub use nelder_mead::NelderMead;
 pub use pso::{Inertia, Pso, Walls};
 pub use random::RandomSearch;
 pub use scp::{Ending, Scp};
 
 use crate::oracle::{Oracle, Rng, Stop};
+use crate::problem::{Evaluation, Formulation};
 
 /// A method of minimisation.
 ///
@@ -19,11 +31,33 @@ use crate::oracle::{Oracle, Rng, Stop};
 pub trait Optimiser: Sync {
     /// Minimises. `Ok` means that the method ended by itself.
     fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop>;
+
+    /// The variables in which it searches the task.
+    fn formulation(&self) -> Formulation {
+        Formulation::TimeFree
+    }
+
+    /// Whether it can search only problems with derivatives.
+    fn needs_derivatives(&self) -> bool {
+        false
+    }
+}
+
+/// The cost to compare points by: what is no number is as bad as can be.
+fn rank(evaluation: &Evaluation) -> f64 {
+    if evaluation.cost.is_nan() { f64::INFINITY } else { evaluation.cost }
 }
 
 /// Writes a point drawn uniformly from the oracle's box.
 fn uniform_point(oracle: &Oracle<'_>, rng: &mut Rng, x: &mut [f64]) {
     for (x, [lower, upper]) in x.iter_mut().zip(oracle.bounds().iter()) {
         *x = rng.uniform(lower, upper);
+    }
+}
+
+/// Writes the point of the oracle's box that stands at `z` in the unit box.
+fn scale_from_unit(oracle: &Oracle<'_>, z: &[f64], x: &mut [f64]) {
+    for ((x, z), [lower, upper]) in x.iter_mut().zip(z).zip(oracle.bounds().iter()) {
+        *x = (lower + z * (upper - lower)).clamp(lower, upper);
     }
 }

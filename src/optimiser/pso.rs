@@ -98,6 +98,10 @@ impl Optimiser for Pso {
         }
         Ok(())
     }
+
+    fn formulation(&self) -> Formulation {
+        self.formulation
+    }
 }
 
 impl Pso {

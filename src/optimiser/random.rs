@@ -34,4 +34,8 @@ impl Optimiser for RandomSearch {
             oracle.evaluate_batch(&points, &mut evaluations)?;
         }
     }
+
+    fn formulation(&self) -> Formulation {
+        self.formulation
+    }
 }

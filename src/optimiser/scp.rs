@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use super::conic::{Step, Subproblem};
 use super::{Optimiser, uniform_point};
-use crate::input::{count, fraction, positive};
+use crate::input::{count, fraction, optional_count, positive};
 use crate::oracle::{Oracle, Rng, Stop};
 use crate::problem::{Linearisation, Multipliers, Piece};
 
@@ -30,9 +30,11 @@ use crate::problem::{Linearisation, Multipliers, Piece};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct Scp {
-    /// random starts, each followed to its local optimum
-    #[serde(deserialize_with = "count::<1_000_000_000, _, _>")]
-    pub starts: NonZeroUsize,
+    /// starts, each followed to its local optimum; without it 100 random ones, or after another
+    /// optimiser the best point it found and no more
+    #[serde(deserialize_with = "optional_count::<1, 1_000_000_000, _, _>")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub starts: Option<NonZeroUsize>,
     /// most steps from one start
     #[serde(deserialize_with = "count::<1_000_000, _, _>")]
     pub steps: NonZeroUsize,
@@ -52,8 +54,15 @@ pub struct Scp {
 
 impl Default for Scp {
     fn default() -> Self {
-        let [starts, steps] = [100, 200].map(|n| NonZeroUsize::MIN.saturating_add(n - 1));
-        Self { starts, steps, radius: 0.1, first_weight: 4.0, tolerance: 1e-9, stationarity: 1e-5 }
+        let steps = NonZeroUsize::MIN.saturating_add(199);
+        Self {
+            starts: None,
+            steps,
+            radius: 0.1,
+            first_weight: 4.0,
+            tolerance: 1e-9,
+            stationarity: 1e-5,
+        }
     }
 }
 
@@ -70,12 +79,11 @@ pub enum Ending {
 
 impl Optimiser for Scp {
     fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
-        let mut x = vec![0.0; oracle.bounds().len()];
-        for _ in 0..self.starts.get() {
-            draw(oracle, rng, &mut x);
-            self.follow(oracle, &x)?;
-        }
-        Ok(())
+        self.minimise_from(None, oracle, rng)
+    }
+
+    fn needs_derivatives(&self) -> bool {
+        true
     }
 }
 
@@ -101,6 +109,26 @@ const NARROW: f64 = 0.3;
 const WIDEN: f64 = 0.7;
 
 impl Scp {
+    /// Minimises with `first` as the first start, where there is one.
+    pub(super) fn minimise_from(
+        &self,
+        first: Option<&[f64]>,
+        oracle: &mut Oracle<'_>,
+        rng: &mut Rng,
+    ) -> Result<(), Stop> {
+        let usual = if first.is_some() { 1 } else { 100 };
+        let starts = self.starts.map_or(usual, NonZeroUsize::get);
+        if let Some(first) = first {
+            self.follow(oracle, first)?;
+        }
+        let mut x = vec![0.0; oracle.bounds().len()];
+        for _ in usize::from(first.is_some())..starts {
+            draw(oracle, rng, &mut x);
+            self.follow(oracle, &x)?;
+        }
+        Ok(())
+    }
+
     /// Follows one start to a local optimum.
     pub fn follow(&self, oracle: &mut Oracle<'_>, start: &[f64]) -> Result<Ending, Stop> {
         let mut here = Iterate::at(oracle, DVector::from_column_slice(start))?;

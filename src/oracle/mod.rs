@@ -119,7 +119,7 @@ impl<'a> Oracle<'a> {
         self.budget - self.evaluations
     }
 
-    /// Evaluations made.
+    /// Evaluations made: those that returned, and the one that panicked where one did.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
     }
@@ -149,7 +149,7 @@ impl<'a> Oracle<'a> {
         self.in_problem
     }
 
-    /// The best so far; a cost that is not a number is never best.
+    /// The best so far; a cost that is infinite or not a number is never best.
     pub fn best(&self) -> Option<&Best> {
         self.best.as_ref()
     }
@@ -157,11 +157,11 @@ impl<'a> Oracle<'a> {
     /// Evaluates one point.
     pub fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, Stop> {
         self.check()?;
+        self.begin();
         let clock = Instant::now();
         let evaluation = self.problem.evaluate(x);
         self.in_problem += clock.elapsed();
         self.record(x, evaluation);
-        self.watch.add_evaluations(1);
         Ok(evaluation)
     }
 
@@ -172,13 +172,22 @@ impl<'a> Oracle<'a> {
         let affordable = usize::try_from(self.remaining()).unwrap_or(usize::MAX);
         let cut = (affordable < points.len()).then(|| points.prefix(affordable));
         let points = cut.as_ref().unwrap_or(points);
-        let clock = Instant::now();
-        self.problem.evaluate_batch(points, &mut out[..points.len()]);
-        self.in_problem += clock.elapsed();
-        for (x, &evaluation) in points.iter().zip(out.iter()) {
-            self.record(x, evaluation);
+        let mut places = points.iter().zip(out).peekable();
+        if places.peek().is_none() {
+            return Ok(());
         }
-        self.watch.add_evaluations(points.len() as u64);
+        self.begin();
+        let clock = Instant::now();
+        self.problem.evaluate_batch(points, &mut |evaluation| {
+            if let Some((x, place)) = places.next() {
+                *place = evaluation;
+                self.record(x, evaluation);
+            }
+            if places.peek().is_some() {
+                self.begin();
+            }
+        });
+        self.in_problem += clock.elapsed();
         if cut.is_some() { Err(Stop::BudgetSpent) } else { Ok(()) }
     }
 
@@ -186,12 +195,12 @@ impl<'a> Oracle<'a> {
     pub fn linearise(&mut self, x: &[f64]) -> Result<Linearisation, Stop> {
         self.check()?;
         let composite = self.problem.composite().ok_or(Stop::NoDerivatives)?;
+        self.begin();
+        self.linearisations += 1;
         let clock = Instant::now();
         let linearisation = composite.linearise(x);
         self.in_problem += clock.elapsed();
-        self.linearisations += 1;
         self.record(x, Evaluation { cost: linearisation.cost(), violation: 0.0 });
-        self.watch.add_evaluations(1);
         Ok(linearisation)
     }
 
@@ -203,10 +212,10 @@ impl<'a> Oracle<'a> {
     ) -> Result<DMatrix<f64>, Stop> {
         self.check()?;
         let composite = self.problem.composite().ok_or(Stop::NoDerivatives)?;
+        self.curvatures += 1;
         let clock = Instant::now();
         let curvature = composite.curvature(x, multipliers);
         self.in_problem += clock.elapsed();
-        self.curvatures += 1;
         Ok(curvature)
     }
 
@@ -218,7 +227,24 @@ impl<'a> Oracle<'a> {
         solution
     }
 
-    /// The improvements and, unless no cost was a number, the last evaluation, in order.
+    /// Lets a search spend so many of the evaluations left, at most. Where only these are spent, and
+    /// not the whole budget, that is no reason to stop.
+    pub fn within(
+        &mut self,
+        evaluations: u64,
+        search: impl FnOnce(&mut Self) -> Result<(), Stop>,
+    ) -> Result<(), Stop> {
+        let budget = self.budget;
+        self.budget = budget.min(self.evaluations.saturating_add(evaluations));
+        let outcome = search(self);
+        self.budget = budget;
+        match outcome {
+            Err(Stop::BudgetSpent) if self.remaining() > 0 => Ok(()),
+            outcome => outcome,
+        }
+    }
+
+    /// The improvements and, unless no cost was finite, the last evaluation, in order.
     pub fn into_trace(mut self) -> Vec<TracePoint> {
         if let (Some(last), Some(best)) = (self.trace.last(), &self.best)
             && last.evaluation < self.evaluations
@@ -242,10 +268,15 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    fn record(&mut self, x: &[f64], evaluation: Evaluation) {
+    /// Counts an evaluation that is about to be made: it may panic and never be recorded.
+    fn begin(&mut self) {
         self.evaluations += 1;
+        self.watch.add_evaluations(1);
+    }
+
+    fn record(&mut self, x: &[f64], evaluation: Evaluation) {
         let best = self.best.as_ref().map_or(f64::INFINITY, |b| b.evaluation.cost);
-        if evaluation.cost < best {
+        if evaluation.cost.is_finite() && evaluation.cost < best {
             self.best = Some(Best { x: x.to_vec(), evaluation });
             self.trace.push(TracePoint {
                 evaluation: self.evaluations,

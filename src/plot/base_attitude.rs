@@ -22,6 +22,7 @@ pub fn base_attitude(motion: &Motion, task: &Task) -> Figure {
         lines.push(Line::level(if i == 0 { "goal" } else { "" }, angle, end));
     }
     let panel = Panel {
+        title: String::new(),
         x: Axis::linear("time t [s]", [0.0, end], 0.0),
         y: Axis::linear("base Euler angle [°]", extent(&lines), MARGIN),
         bands: Vec::new(),

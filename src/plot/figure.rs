@@ -1,5 +1,6 @@
 //! A figure: a legend above panels, and the files it is written to.
 
+use std::collections::HashSet;
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
@@ -120,13 +121,14 @@ impl Figure {
         Ok(drawing.replacen(&in_units, &in_mm, 1))
     }
 
-    /// The named lines of the first panel, in rows that fit the width, each with its place \[units\].
+    /// The named lines of all panels, each name once, in rows that fit the width, each with its place
+    /// \[units\].
     fn legend(&self) -> Vec<Vec<(i32, &Line)>> {
         LazyLock::force(&FONTS);
         let mut rows: Vec<Vec<(i32, &Line)>> = Vec::new();
         let mut x = i32::MAX;
-        for line in self.panels.iter().take(1).flat_map(|p| &p.lines).filter(|l| !l.name.is_empty())
-        {
+        let mut named = HashSet::from([""]);
+        for line in self.panels.iter().flat_map(|p| &p.lines).filter(|l| named.insert(&l.name)) {
             let width = units(4.6) + text_width(&line.name);
             if x.saturating_add(width) > units(COLUMN_MM) {
                 rows.push(Vec::new());

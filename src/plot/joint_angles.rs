@@ -23,6 +23,7 @@ pub(super) fn joint_panel(motion: &Motion, order: usize, label: &str, limits: &[
         lines.push(Line::level(name, limit, end));
     }
     Panel {
+        title: String::new(),
         x: Axis::linear("time t [s]", [0.0, end], 0.0),
         y: Axis::linear(label, extent(&lines), MARGIN),
         bands: Vec::new(),

@@ -12,13 +12,16 @@ use super::style::{FONT, GRID, INK, Stroke, text_size, units};
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Room above and to the right of the axes \[mm\].
+/// Room above and to the right of the axes, and for a title \[mm\].
 const TOP: f64 = 1.2;
+const TITLE: f64 = 3.6;
 const RIGHT: f64 = 2.0;
 
 /// One pair of axes with its lines.
 #[derive(Debug, Clone)]
 pub(super) struct Panel {
+    /// Stands above the axes, unless empty.
+    pub(super) title: String,
     pub(super) x: Axis,
     pub(super) y: Axis,
     /// Drawn first, lightly filled.
@@ -52,6 +55,9 @@ pub(super) struct Band {
     pub(super) points: Vec<[f64; 3]>,
 }
 
+/// Most powers of ten that are labelled on a logarithmic axis.
+const MOST_DECADES: f64 = 8.0;
+
 impl Axis {
     /// A linear axis over a range and a little more on both sides, as a share of its width.
     pub(super) fn linear(label: &str, [low, high]: [f64; 2], more: f64) -> Self {
@@ -81,10 +87,12 @@ impl Axis {
             d if d < 2.5 => &[1.0, 2.0, 5.0],
             _ => &[1.0],
         };
+        let every = ((decades / MOST_DECADES).ceil() as i32).max(1);
         let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;
         let ticks = exponents
             .flat_map(|e| mantissas.iter().map(move |&m| (m, e)))
             .filter(|&(m, e)| (low..=high * (1.0 + 1e-9)).contains(&(m * 10_f64.powi(e))))
+            .filter(|(_, e)| e % every == 0)
             .map(|(m, e)| (m.log10() + f64::from(e), power(m, e)));
         Self {
             label: label.to_owned(),
@@ -156,7 +164,8 @@ fn power(mantissa: f64, exponent: i32) -> String {
     }
     let raised = |c: char| match c.to_digit(10) {
         Some(digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit as usize).unwrap_or(c),
-        None => '⁻',
+        // The font has no raised minus sign; its macron looks like one.
+        None => '¯',
     };
     let digits: String = exponent.to_string().chars().map(raised).collect();
     if mantissa == 1.0 { format!("10{digits}") } else { format!("{mantissa}·10{digits}") }
@@ -206,7 +215,7 @@ impl Panel {
         with_x_label: bool,
     ) -> Result<(), PlotError> {
         let mut chart = ChartBuilder::on(area)
-            .margin_top(units(TOP))
+            .margin_top(units(self.top()))
             .margin_right(units(RIGHT))
             .set_label_area_size(LabelAreaPosition::Left, units(left))
             .set_label_area_size(LabelAreaPosition::Bottom, units(below(with_x_label)))
@@ -264,10 +273,18 @@ impl Panel {
             let style = text.clone().pos(Pos::new(HPos::Center, VPos::Bottom));
             area.draw_text(&self.x.label, &style, (middle, height - units(0.3)))?;
         }
-        let middle = units(TOP) + (height - below - units(TOP)) / 2;
+        let style = text.clone().pos(Pos::new(HPos::Left, VPos::Top));
+        area.draw_text(&self.title, &style, (units(left), units(0.4)))?;
+        let top = units(self.top());
+        let middle = top + (height - below - top) / 2;
         let style = text.transform(FontTransform::Rotate270).pos(Pos::new(HPos::Center, VPos::Top));
         area.draw_text(&self.y.label, &style, (units(0.3), middle))?;
         Ok(())
+    }
+
+    /// Room above the axes \[mm\].
+    fn top(&self) -> f64 {
+        if self.title.is_empty() { TOP } else { TOP + TITLE }
     }
 
     /// Room that the vertical axis needs \[mm\]: its label, its tick texts, its ticks.

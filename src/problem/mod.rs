@@ -1,5 +1,7 @@
 //! What an optimiser sees: a box and a cost.
 
+mod analytic;
+mod best_known;
 mod composite;
 mod formulation;
 mod motion;
@@ -7,6 +9,8 @@ mod published;
 mod reorientation;
 mod settings;
 
+pub use analytic::{Analytic, TestFunction};
+pub use best_known::{BestKnown, fingerprint};
 pub use composite::{Composite, Linearisation, Multipliers, Piece};
 pub use formulation::{Formulated, Formulation};
 pub use motion::{JointMotion, Motion};
@@ -24,10 +28,10 @@ pub trait Problem: Sync {
     /// The cost of one point of the box.
     fn evaluate(&self, x: &[f64]) -> Evaluation;
 
-    /// The cost of many points; `out` has one place for each.
-    fn evaluate_batch(&self, points: &Points, out: &mut [Evaluation]) {
-        for (x, evaluation) in points.iter().zip(out) {
-            *evaluation = self.evaluate(x);
+    /// The cost of many points: `each` is told every one as soon as it is known, in their order.
+    fn evaluate_batch(&self, points: &Points, each: &mut dyn FnMut(Evaluation)) {
+        for x in points {
+            each(self.evaluate(x));
         }
     }
 

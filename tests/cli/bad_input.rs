@@ -128,7 +128,28 @@ fn experiments() {
             "population_huge",
             "name = 'x'\n[[optimiser]]\npso = { population = 1_000_000_000_000 }\n".to_owned(),
         ),
+        ("too_few_vectors", "name = 'x'\n[[optimiser]]\nde = { population = 3 }\n".to_owned()),
+        ("weight_not_a_number", "name = 'x'\n[[optimiser]]\nde = { weight = nan }\n".to_owned()),
+        ("crossover_negative", "name = 'x'\n[[optimiser]]\nde = { crossover = -0.1 }\n".to_owned()),
+        ("no_memory", "name = 'x'\n[[optimiser]]\nl-shade = { memory = 0 }\n".to_owned()),
+        ("archive_negative", "name = 'x'\n[[optimiser]]\nl-shade = { archive = -1 }\n".to_owned()),
+        (
+            "population_in_parts",
+            "name = 'x'\n[[optimiser]]\nl-shade = { population = 40.5 }\n".to_owned(),
+        ),
+        ("simplex_flat", "name = 'x'\n[[optimiser]]\nnelder-mead = { simplex = 0 }\n".to_owned()),
+        (
+            "tolerance_infinite",
+            "name = 'x'\n[[optimiser]]\nnelder-mead = { size_tolerance = inf }\n".to_owned(),
+        ),
+        ("step_too_large", "name = 'x'\n[[optimiser]]\ncma-es = { step = 1.5 }\n".to_owned()),
+        ("no_growth", "name = 'x'\n[[optimiser]]\ncma-es = { growth = 0 }\n".to_owned()),
         ("target_not_a_number", format!("name = 'x'\ntargets = [nan]{FIELD}")),
+        ("targets_no_list", format!("name = 'x'\ntargets = 0.9{FIELD}")),
+        (
+            "targets_of_no_instance",
+            format!("name = 'x'\ntargets = {{ 'terms=4' = [1] }}\n[sweep]\nterms = [2, 3]{FIELD}"),
+        ),
     ] {
         rejects(
             &format!("experiment_{name}"),
@@ -136,6 +157,34 @@ fn experiments() {
             "experiment.toml",
             text,
         );
+    }
+}
+
+#[cfg(feature = "harness")]
+#[test]
+fn experiments_on_functions() {
+    const FIELD: &str = "\n[[optimiser]]\nrandom = {}\n";
+    let on = |table: &str| format!("name = 'x'\n[functions]\n{table}{FIELD}");
+    let sphere = on("name = ['sphere']");
+    for (name, text) in [
+        ("and_task", format!("{sphere}[task.weights]\nbase = 0.5\n")),
+        ("and_trajectory", format!("{sphere}[trajectory]\nterms = 2\n")),
+        ("and_sweep", format!("{sphere}[sweep]\nterms = [2]\n")),
+        ("without_names", on("dimension = [3]")),
+        ("no_names", on("name = []")),
+        ("unknown", on("name = ['spere']")),
+        ("twice", on("name = ['sphere', 'sphere']")),
+        ("no_dimensions", on("name = ['sphere']\ndimension = []")),
+        ("one_dimension", on("name = ['sphere']\ndimension = [10, 1]")),
+        ("dimension_no_list", on("name = ['sphere']\ndimension = 10")),
+        ("no_instances", on("name = ['sphere']\ninstances = 0")),
+        ("unknown_key", on("name = ['sphere']\ninstance = 1")),
+        ("no_table", format!("name = 'x'\nfunctions = 'sphere'{FIELD}")),
+        ("without_derivatives", format!("{sphere}[[optimiser]]\nscp = {{}}\n")),
+        ("formulation", format!("{sphere}[[optimiser]]\npso = {{ formulation = 'raw' }}\n")),
+    ] {
+        let args = ["run", "experiment.toml"];
+        rejects(&format!("functions_{name}"), &args, "experiment.toml", text);
     }
 }
 

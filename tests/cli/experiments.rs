@@ -139,6 +139,67 @@ fn figures_come_in_three_formats_with_text_that_is_there() {
     }
 }
 
+/// Instances that differ in shift and rotation alone are summarised and drawn together; what only a
+/// task has is not shown.
+#[test]
+fn test_functions_are_problems_like_any_other() {
+    let text = "name = 'functions'\nseeds = 2\nbudget = { evaluations = 3000 }\n[functions]\n\
+        name = ['sphere', 'rastrigin']\ndimension = [2, 3]\ninstances = 3\n\
+        [[optimiser]]\npso = { population = 20 }\n[[optimiser]]\nrandom = {}\n";
+    let folder = Folder::new().with("functions.toml", text);
+    let check = stdout(&folder.run(&["check", "functions.toml"]));
+    assert!(check.contains("# 48 runs: 12 instances × 2 optimisers × 2 seeds"), "{check}");
+    let summary = run(&folder, &["functions.toml", "--out", "out"]);
+    assert_eq!(files(&folder.path().join("out/runs")).len(), 48);
+    assert_eq!(files(&folder.path().join("out/figures")).len(), 3);
+    let rows: Vec<&str> = summary.lines().filter(|line| line.contains("dimension=")).collect();
+    assert_eq!(rows.len(), 8, "{summary}");
+    let cells: Vec<&str> = rows[0].split_whitespace().collect();
+    assert_eq!(cells[..5], ["sphere", "dimension=2", "pso", "6", "0"]);
+    assert_eq!(cells[cells.len() - 3..], ["6/6", "6/6", "6/6"], "{summary}");
+    assert!(summary.contains("f ≤ 0.01") && summary.contains("f ≤ 1e-8"), "{summary}");
+    for word in ["t_f", "residual", "motion", "J"] {
+        assert!(!summary.contains(word), "{word}: {summary}");
+    }
+    for runs in table(&folder.path().join("out/runs")) {
+        let name = runs.column("problem").unwrap().str().unwrap().get(0).unwrap();
+        assert!(["sphere", "rastrigin"].contains(&name));
+        assert!(runs.column("t_f").unwrap().get(0).unwrap().is_null());
+        assert_eq!(runs.column("evaluations").unwrap().u64().unwrap().get(0), Some(3000));
+    }
+    run(&folder, &["out/experiment.toml", "--out", "again"]);
+    let traces = |out: &str| files(&folder.path().join(out).join("traces"));
+    assert_eq!(traces("out"), traces("again"));
+}
+
+/// Without targets of its own an experiment takes those of the best motions known, 0.781849 and
+/// 0.631490, and keeps them with its results.
+#[test]
+fn targets_follow_the_best_known() {
+    let text = "name = 'x'\nseeds = 1\nbudget = { evaluations = 20 }\n[[optimiser]]\nrandom = {}\n";
+    let folder = Folder::new().with("one.toml", text);
+    let summary = run(&folder, &["one.toml", "--out", "one"]);
+    for target in ["J ≤ 0.860033", "J ≤ 0.789667", "J ≤ 0.78263"] {
+        assert!(summary.contains(target), "{summary}");
+    }
+    assert!(summary.contains(" above the best known, 0.781849)"), "{summary}");
+    let runs = &table(&folder.path().join("one/runs"))[0];
+    let targets = runs.column("targets").unwrap().list().unwrap().get_as_series(0).unwrap();
+    assert_eq!(targets.f64().unwrap().get(0), Some(0.860_033));
+    let kept = fs::read_to_string(folder.path().join("one/experiment.toml")).unwrap();
+    assert!(kept.contains("targets = [0.860033, 0.789667, 0.78263]"), "{kept}");
+
+    let folder = folder.with("many.toml", text.to_owned() + "[sweep]\nterms = [2, 3, 5]\n");
+    let summary = run(&folder, &["many.toml", "--out", "many"]);
+    assert!(summary.contains("J, target 1"), "{summary}");
+    for target in ["0/1 ≤ 0.860033", "0/1 ≤ 0.694639"] {
+        assert!(summary.contains(target), "{summary}");
+    }
+    let kept = stdout(&folder.run(&["check", "many/experiment.toml"]));
+    assert!(kept.contains("\"terms=5\" = []"), "{kept}");
+    assert_eq!(run(&folder, &["many/experiment.toml", "--out", "many"]), summary);
+}
+
 #[test]
 fn shipped_experiments_are_valid() {
     for (name, bytes) in files(Path::new("experiments")) {

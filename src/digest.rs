@@ -1,0 +1,22 @@
+//! A short name for a long text.
+
+use std::fmt::Write as _;
+
+use sha2::{Digest, Sha256};
+
+/// The first 16 hexadecimal digits of a text's SHA-256.
+pub fn digest(text: &str) -> String {
+    Sha256::digest(text).iter().take(8).fold(String::new(), |mut hex, byte| {
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    /// The value for "abc" is the first example of NIST's FIPS 180-4 test vectors.
+    #[test]
+    fn is_the_beginning_of_sha_256() {
+        assert_eq!(super::digest("abc"), "ba7816bf8f01cfea");
+    }
+}

@@ -1,0 +1,103 @@
+//! What the runs of an experiment minimise.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::problem::{Assessment, Boxes, Formulated, Formulation, Problem, Reorientation};
+
+/// One problem of an experiment.
+#[derive(Debug, Clone)]
+pub struct Instance {
+    /// What tells it from the others, such as `weight_base=0.5 terms=4`; empty where there is but one.
+    pub label: String,
+    /// What it shares with those it is summarised and drawn with; the label where there are none.
+    pub group: String,
+    /// The problem.
+    pub subject: Subject,
+    /// Costs whose success rate the summary shows.
+    pub targets: Vec<f64>,
+}
+
+/// The two kinds of problems.
+#[derive(Clone)]
+pub enum Subject {
+    /// The reorientation task, in the variables of each optimiser's formulation.
+    Task {
+        /// The task over its family.
+        problem: Arc<Reorientation>,
+        /// Where to search.
+        boxes: Boxes,
+    },
+    /// Any other problem, in its own variables.
+    Other {
+        /// Together with the instance's label it says which problem this is: a stored run with the
+        /// same of both is taken for a run on the same problem.
+        name: String,
+        /// The problem.
+        problem: Arc<dyn Problem + Send + Sync>,
+    },
+}
+
+impl fmt::Debug for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Subject {
+    /// The problem's name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Task { .. } => "reorientation",
+            Self::Other { name, .. } => name,
+        }
+    }
+}
+
+impl Instance {
+    /// The reorientation task.
+    pub fn task(label: String, problem: Arc<Reorientation>, boxes: Boxes) -> Self {
+        let subject = Subject::Task { problem, boxes };
+        Self { group: label.clone(), label, subject, targets: Vec::new() }
+    }
+
+    /// Any other problem.
+    pub fn other(label: &str, name: &str, problem: Arc<dyn Problem + Send + Sync>) -> Self {
+        let subject = Subject::Other { name: name.to_owned(), problem };
+        Self { label: label.to_owned(), group: label.to_owned(), subject, targets: Vec::new() }
+    }
+
+    /// Whether this is the reorientation task.
+    pub fn is_task(&self) -> bool {
+        self.reorientation().is_some()
+    }
+
+    /// The reorientation task, if this is one.
+    pub fn reorientation(&self) -> Option<&Reorientation> {
+        match &self.subject {
+            Subject::Task { problem, .. } => Some(problem),
+            Subject::Other { .. } => None,
+        }
+    }
+
+    /// The problem as an optimiser with this formulation sees it.
+    pub fn problem(&self, formulation: Formulation) -> Arc<dyn Problem + Send + Sync> {
+        match &self.subject {
+            Subject::Task { problem, boxes } => {
+                Arc::new(Formulated::new(formulation, problem.clone(), boxes))
+            }
+            Subject::Other { problem, .. } => problem.clone(),
+        }
+    }
+
+    /// The motion that a point stands for, evaluated finely: its coefficients and what is known of
+    /// it. A problem that is no task has none.
+    pub fn certify(&self, formulation: Formulation, x: &[f64]) -> Option<(Vec<f64>, Assessment)> {
+        match &self.subject {
+            Subject::Task { problem, boxes } => {
+                Some(Formulated::new(formulation, problem.clone(), boxes).certify(x))
+            }
+            Subject::Other { .. } => None,
+        }
+    }
+}

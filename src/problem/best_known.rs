@@ -1,0 +1,214 @@
+//! The best motions known, from `results/best-known.toml`.
+//!
+//! A task and a number of terms are told by a fingerprint of all that the least cost follows from, so
+//! that neither names nor the way in which a file is written matter.
+
+use std::fmt;
+use std::sync::LazyLock;
+
+use nalgebra::UnitQuaternion;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::{Accuracy, Assessment, Reorientation};
+use crate::digest::digest;
+use crate::input::{Document, InputError};
+use crate::robot::Robot;
+use crate::task::{Task, TaskTable};
+use crate::trajectory::Limits;
+
+/// Share of the best known cost that tells a better motion from the same one.
+const SAME: f64 = 1e-6;
+
+/// Numbers of a task below this are zero: what is left of a right angle's cosine.
+const ZERO: f64 = 1e-12;
+
+/// One entry of the file, written by `driftless plan`.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BestKnown {
+    /// [`fingerprint`] of the task and the number of terms.
+    pub fingerprint: String,
+    /// Free coefficients a joint.
+    pub terms: usize,
+    /// The cost `J`, evaluated finely, to ten significant digits.
+    pub j: f64,
+    /// Duration \[s\].
+    pub t_f: f64,
+    /// Bump coefficients, one row a joint.
+    pub coefficients: Vec<Vec<f64>>,
+    /// The command that found it.
+    pub found_by: String,
+    /// Year, month and day.
+    pub date: String,
+    /// The task, with nothing left out.
+    pub task: TaskTable,
+}
+
+/// The whole file.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BestKnownFile {
+    motion: Vec<BestKnown>,
+}
+
+fn document() -> Document {
+    Document::embedded("best-known.toml", include_str!("../../results/best-known.toml"))
+}
+
+impl BestKnown {
+    /// Every entry.
+    #[expect(clippy::expect_used, reason = "the file comes with the program, and a test reads it")]
+    pub fn all() -> &'static [Self] {
+        static ALL: LazyLock<BestKnownFile> =
+            LazyLock::new(|| document().parse().expect("the best known motions are readable"));
+        &ALL.motion
+    }
+
+    /// What is known of a task over its family.
+    pub fn of(problem: &Reorientation) -> Option<&'static Self> {
+        let fingerprint = fingerprint(problem);
+        Self::all().iter().find(|entry| entry.fingerprint == fingerprint)
+    }
+
+    /// A motion as an entry.
+    pub fn new(
+        problem: &Reorientation,
+        task: TaskTable,
+        coefficients: &[f64],
+        assessment: &Assessment,
+        found_by: String,
+    ) -> Self {
+        let terms = problem.family().terms();
+        Self {
+            fingerprint: fingerprint(problem),
+            terms,
+            j: significant::<10>(assessment.cost),
+            t_f: assessment.duration,
+            coefficients: coefficients.chunks_exact(terms).map(<[f64]>::to_vec).collect(),
+            found_by,
+            date: chrono::Utc::now().date_naive().to_string(),
+            task,
+        }
+    }
+
+    /// The cost that exceeds the best known by this share of it, to six significant digits.
+    pub fn target(&self, gap: f64) -> f64 {
+        significant::<6>(self.j * (1.0 + gap))
+    }
+
+    /// Whether a cost is lower, and by more than the last digits.
+    pub fn is_beaten_by(&self, cost: f64) -> bool {
+        self.gap(cost) < -SAME
+    }
+
+    /// By which share of it a cost exceeds the best known.
+    fn gap(&self, cost: f64) -> f64 {
+        (cost - self.j) / self.j
+    }
+
+    /// How a cost compares, in words.
+    pub fn compared_with(&self, cost: f64) -> String {
+        let percent = 100.0 * self.gap(cost);
+        let known = format!("the best known, {:.6}", self.j);
+        match percent {
+            p if p.abs() <= 100.0 * SAME => format!("reaches {known}"),
+            p if p > 0.0 => format!("{} % above {known}", significant::<3>(p)),
+            p => format!("{} % below {known}", significant::<3>(-p)),
+        }
+    }
+
+    /// The entry's motion over its task, evaluated finely.
+    pub fn replay(&self) -> Result<(Reorientation, Assessment), InputError> {
+        let task = self.task.build(&document())?;
+        let problem = Reorientation::new(task.into(), self.terms, Accuracy::FINE);
+        let assessment = problem.assess(&self.coefficients.concat(), Some(self.t_f));
+        Ok((problem, assessment))
+    }
+}
+
+/// The text to put into the file.
+impl fmt::Display for BestKnown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let file = BestKnownFile { motion: vec![self.clone()] };
+        f.write_str(&toml::to_string(&file).map_err(|_| fmt::Error)?)
+    }
+}
+
+/// What the least cost of a task over a family follows from: the [`digest`] of a JSON text with sorted
+/// keys and without names, numbers rounded to nine significant digits, of the robot, the joints' angles
+/// at both ends, the turn of the base from start to goal, the limits, `K_b` and the number of terms.
+///
+/// Boxes and accuracies are those of a search, not of the task.
+pub fn fingerprint(problem: &Reorientation) -> String {
+    #[derive(Serialize)]
+    struct Determinants<'a> {
+        robot: &'a Robot,
+        start: &'a [f64],
+        goal: &'a [f64],
+        turn: UnitQuaternion<f64>,
+        limits: &'a Limits,
+        base_weight: f64,
+        terms: usize,
+    }
+    let Task { robot, start, goal, limits, base_weight } = &**problem.task();
+    let turn = start.base.inverse() * goal.base;
+    let determinants = Determinants {
+        robot,
+        start: &start.joints,
+        goal: &goal.joints,
+        // Of the two quaternions for one turn, the one with a positive real part.
+        turn: if turn.w < 0.0 { UnitQuaternion::new_unchecked(-turn.into_inner()) } else { turn },
+        limits,
+        base_weight: *base_weight,
+        terms: problem.family().terms(),
+    };
+    digest(&canonical(serde_json::to_value(determinants).unwrap_or_default()).to_string())
+}
+
+/// Keys sorted, names left out, numbers rounded.
+fn canonical(value: Value) -> Value {
+    match value {
+        Value::Number(number) => {
+            let number = number.as_f64().unwrap_or_default();
+            let rounded = if number.abs() < ZERO { 0.0 } else { significant::<9>(number) };
+            rounded.into()
+        }
+        Value::Array(values) => values.into_iter().map(canonical).collect(),
+        Value::Object(map) => {
+            let mut entries: Vec<_> = map.into_iter().filter(|(key, _)| key != "name").collect();
+            entries.sort_by(|a, b| a.0.cmp(&b.0));
+            let entries = entries.into_iter().map(|(key, value)| (key, canonical(value)));
+            Value::Object(entries.collect::<Map<_, _>>())
+        }
+        other => other,
+    }
+}
+
+/// A number rounded to so many significant digits.
+fn significant<const DIGITS: usize>(number: f64) -> f64 {
+    let text = format!("{number:.*e}", DIGITS - 1);
+    text.parse().unwrap_or(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is printed can be put into the file.
+    #[test]
+    fn an_entry_reads_back() {
+        let entry = &BestKnown::all()[0];
+        let (problem, assessment) = entry.replay().unwrap();
+        let coefficients = entry.coefficients.concat();
+        let text =
+            BestKnown::new(&problem, entry.task.clone(), &coefficients, &assessment, "x".into())
+                .to_string();
+        let file: BestKnownFile = Document::embedded("entry", &text).parse().unwrap();
+        let [again] = &file.motion[..] else { panic!("expected one motion") };
+        assert_eq!(again.fingerprint, entry.fingerprint);
+        assert_eq!((again.j, again.t_f), (entry.j, entry.t_f));
+        assert_eq!(again.coefficients, entry.coefficients);
+        assert_eq!(again.replay().unwrap().1.cost, assessment.cost);
+    }
+}

@@ -1,0 +1,285 @@
+//! Experiments survive problems that do not behave: what fails is recorded, and the rest goes on.
+#![cfg(feature = "harness")]
+
+use std::num::NonZeroU64;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use driftless::analysis;
+use driftless::experiment::{self, Instance, Plan, Progress, Record, RunSpec, Store};
+use driftless::optimiser::Settings;
+use driftless::oracle::{Oracle, Watch};
+use driftless::problem::{Bounds, Evaluation, Points, Problem};
+use polars::prelude::*;
+
+/// What a problem does at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Mood {
+    Sound,
+    Panics,
+    NotANumber,
+    Infinite,
+    MinusInfinite,
+}
+
+/// The sum of squares at half of the points, chosen by a hash of the point; the mood at the others,
+/// or at all of them.
+struct Fickle {
+    mood: Mood,
+    always: bool,
+    bounds: Bounds,
+    calls: AtomicU64,
+}
+
+impl Fickle {
+    fn new(mood: Mood, always: bool) -> Self {
+        let bounds = Bounds::new(vec![[-5.0, 5.0]; 3]);
+        Self { mood, always, bounds, calls: AtomicU64::new(0) }
+    }
+
+    /// The sixth bit of an FNV-1a hash.
+    fn is_moody(&self, x: &[f64]) -> bool {
+        let bytes = x.iter().flat_map(|x| x.to_bits().to_le_bytes());
+        let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+        self.always || hash & 0x20 != 0
+    }
+}
+
+impl Problem for Fickle {
+    fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Evaluation {
+        self.calls.fetch_add(1, Ordering::Relaxed);
+        let mood = if self.is_moody(x) { self.mood } else { Mood::Sound };
+        let cost = match mood {
+            Mood::Sound => x.iter().map(|x| x * x).sum(),
+            Mood::Panics => panic!("out of sorts\nat {x:?}"),
+            Mood::NotANumber => f64::NAN,
+            Mood::Infinite => f64::INFINITY,
+            Mood::MinusInfinite => f64::NEG_INFINITY,
+        };
+        Evaluation { cost, violation: 0.0 }
+    }
+}
+
+struct Count(AtomicU64);
+
+impl Progress for Count {
+    fn finished(&self, _: &RunSpec, _: &Record) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+/// Runs what is missing; how many runs that were.
+fn run(plan: &Plan, store: &Store) -> u64 {
+    let runs: Vec<&RunSpec> = plan.runs.iter().collect();
+    let count = Count(AtomicU64::new(0));
+    experiment::run(plan, &runs, store, 2, &Watch::default(), &count).unwrap();
+    count.0.into_inner()
+}
+
+fn plan(mood: Mood, always: bool, budget: u64) -> (Plan, Arc<Fickle>) {
+    let problem = Arc::new(Fickle::new(mood, always));
+    let instance = Instance::other("", &format!("{mood:?} {always}"), problem.clone());
+    let number = |n| NonZeroU64::new(n).unwrap();
+    let plan = Plan::over("fickle", vec![instance], &Settings::all(), number(1), number(budget));
+    (plan, problem)
+}
+
+const COLUMNS: [&str; 37] = [
+    "format",
+    "key",
+    "recipe",
+    "experiment",
+    "problem",
+    "instance",
+    "optimiser",
+    "formulation",
+    "settings",
+    "robot",
+    "weight_base",
+    "rate_limit_deg_s",
+    "acceleration_limit_deg_s2",
+    "jerk_limit_deg_s3",
+    "terms",
+    "targets",
+    "seed",
+    "budget",
+    "j",
+    "violation",
+    "x",
+    "certified_j",
+    "residual_deg",
+    "t_f",
+    "penalty",
+    "coefficients",
+    "evaluations",
+    "linearisations",
+    "conic_solves",
+    "conic_failures",
+    "seconds",
+    "seconds_in_problem",
+    "status",
+    "message",
+    "version",
+    "commit",
+    "date",
+];
+
+/// Columns that only the reorientation task fills.
+const TASK_ONLY: [&str; 11] = [
+    "formulation",
+    "robot",
+    "weight_base",
+    "rate_limit_deg_s",
+    "acceleration_limit_deg_s2",
+    "jerk_limit_deg_s3",
+    "terms",
+    "residual_deg",
+    "t_f",
+    "penalty",
+    "coefficients",
+];
+
+fn text(frame: &DataFrame, column: &str, i: usize) -> String {
+    frame.column(column).unwrap().str().unwrap().get(i).unwrap().to_owned()
+}
+
+fn whole(frame: &DataFrame, column: &str, i: usize) -> u64 {
+    frame.column(column).unwrap().u64().unwrap().get(i).unwrap()
+}
+
+fn real(frame: &DataFrame, column: &str, i: usize) -> Option<f64> {
+    frame.column(column).unwrap().f64().unwrap().get(i)
+}
+
+/// What one row of the runs and its trace have to say, whatever went wrong.
+fn check(plan: &Plan, mood: Mood, always: bool, runs: &DataFrame, traces: &DataFrame, i: usize) {
+    let run = &plan.runs[i];
+    let (status, message) = (text(runs, "status", i), text(runs, "message", i));
+    let optimiser = text(runs, "optimiser", i);
+    let context = format!("{mood:?} {always} {optimiser} {}: {status} {message}", run.budget);
+    let evaluations = whole(runs, "evaluations", i);
+    assert!((1..=run.budget).contains(&evaluations), "{context}: {evaluations}");
+    assert_eq!(text(runs, "key", i), run.key);
+    for column in TASK_ONLY {
+        assert!(runs.column(column).unwrap().get(i).unwrap().is_null(), "{context}: {column}");
+    }
+    let expected: &[&str] = match (mood, optimiser.as_str()) {
+        (Mood::Panics, _) if always => &["panicked"],
+        (Mood::Panics, "scp") => &["panicked", "no-derivatives"],
+        (_, "scp") if run.budget > 1 => &["no-derivatives"],
+        (Mood::Panics, _) => &["panicked", "budget-spent", "finished"],
+        _ => &["budget-spent", "finished"],
+    };
+    assert!(expected.contains(&status.as_str()) || run.budget == 1, "{context}");
+    if status == "panicked" {
+        assert!(message.starts_with("out of sorts\nat [") && message.contains("experiment.rs:"));
+    }
+    let trace: Vec<(u64, f64)> = (0..traces.height())
+        .filter(|&row| text(traces, "key", row) == run.key)
+        .map(|row| (whole(traces, "evaluation", row), real(traces, "j", row).unwrap()))
+        .collect();
+    assert!(trace.is_sorted_by(|a, b| a.0 < b.0 && a.1 >= b.1), "{context}: {trace:?}");
+    let best = real(runs, "j", i);
+    assert_eq!(best, real(runs, "certified_j", i), "{context}");
+    assert_eq!(best, trace.last().map(|row| row.1), "{context}");
+    let x = runs.column("x").unwrap().list().unwrap().get_as_series(i);
+    match best {
+        Some(best) => {
+            assert!(best.is_finite() && !always, "{context}: {best}");
+            assert_eq!(trace.last().unwrap().0, evaluations, "{context}");
+            let x: Vec<f64> = x.unwrap().f64().unwrap().into_no_null_iter().collect();
+            assert_eq!(x.iter().map(|x| x * x).sum::<f64>(), best, "{context}");
+        }
+        None => assert!(x.is_none(), "{context}"),
+    }
+}
+
+/// Panics of [`Fickle`] that reached the program's own panic hook, which would print them.
+static HEARD: AtomicU64 = AtomicU64::new(0);
+
+fn listen() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if panic.to_string().contains("out of sorts") {
+            HEARD.fetch_add(1, Ordering::Relaxed);
+        } else {
+            print(panic);
+        }
+    }));
+}
+
+#[test]
+fn every_run_leaves_a_record_whatever_the_problem_does() {
+    listen();
+    let moods = [Mood::Panics, Mood::NotANumber, Mood::Infinite, Mood::MinusInfinite];
+    for (mood, always) in moods.into_iter().flat_map(|mood| [(mood, false), (mood, true)]) {
+        for budget in [1, 2, 10, 64, 65, 151, 400] {
+            let folder = tempfile::tempdir().unwrap();
+            let store = Store::open(folder.path()).unwrap();
+            let (plan, problem) = plan(mood, always, budget);
+            assert_eq!(run(&plan, &store), plan.runs.len() as u64);
+            let keys = || plan.runs.iter().map(|run| run.key.as_str());
+            let (runs, traces) =
+                (store.read("runs", keys()).unwrap(), store.read("traces", keys()).unwrap());
+            assert_eq!(runs.get_column_names(), COLUMNS);
+            assert_eq!(runs.height(), plan.runs.len());
+            (0..runs.height()).for_each(|i| check(&plan, mood, always, &runs, &traces, i));
+            let counted: u64 = (0..runs.height()).map(|i| whole(&runs, "evaluations", i)).sum();
+            assert_eq!(counted, problem.calls.load(Ordering::Relaxed), "{mood:?}, {budget}");
+            assert_eq!(run(&plan, &store), 0, "done again");
+            let stored = analysis::runs(&plan, &runs).unwrap();
+            let summary = analysis::summary(&plan, &stored).unwrap();
+            assert_eq!(summary.height(), plan.optimisers.len());
+        }
+    }
+    assert_eq!(HEARD.load(Ordering::Relaxed), 0, "panics were heard");
+}
+
+/// Costs its number of calls so far; panics at one call.
+struct PanicsAt {
+    call: u64,
+    bounds: Bounds,
+    calls: AtomicU64,
+}
+
+impl Problem for PanicsAt {
+    fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn evaluate(&self, _: &[f64]) -> Evaluation {
+        let call = self.calls.fetch_add(1, Ordering::Relaxed) + 1;
+        assert!(call != self.call, "enough");
+        Evaluation { cost: 1.0 / call as f64, violation: 0.0 }
+    }
+}
+
+/// Of a batch that panics, what returned is counted and kept, and what panicked is counted.
+#[test]
+fn a_panic_within_a_batch_leaves_exact_counts() {
+    for call in 1..=9 {
+        let bounds = Bounds::new(vec![[0.0, 1.0]]);
+        let problem = PanicsAt { call, bounds, calls: AtomicU64::new(0) };
+        let watch = Watch::default();
+        let mut oracle = Oracle::new(&problem, 8, &watch);
+        let points = Points::zeros(1, 5);
+        let mut out = [Evaluation::default(); 5];
+        let attempt = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            while oracle.evaluate_batch(&points, &mut out).is_ok() {}
+        }));
+        assert_eq!(attempt.is_err(), call <= 8);
+        assert_eq!(oracle.evaluations(), call.min(8));
+        assert_eq!(watch.evaluations(), call.min(8));
+        let returned = call.min(9) - 1;
+        let best = oracle.best().map(|best| best.evaluation.cost);
+        assert_eq!(best, (returned > 0).then(|| 1.0 / returned as f64));
+        let trace = oracle.into_trace();
+        assert_eq!(trace.last().map(|row| row.evaluation), best.map(|_| call.min(8)));
+    }
+}
