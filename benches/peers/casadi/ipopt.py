@@ -1,33 +1,26 @@
 """The time-free task as a nonlinear program, in CasADi expressions, solved by IPOPT.
 
-    minimise    K_t t_f                                 over the bump coefficients c and t_f
-    subject to  δq_b(c) = 0                             the base ends at its goal: three rows
-                |θ'|, |θ''|, |θ'''| ≤ limit · t_f^order     every joint, on a grid of times
+    minimise    K_t t_f                                     over the bump coefficients c and t_f
+    subject to  δq_b(c) = 0                                 the base ends at its goal: three rows
+                |θ'|, |θ''|, |θ'''| ≤ limit · t_f^order     of every joint, on grids of times
                 |c| ≤ box
 
-Small pieces are written as expressions in SX: the base's rate at a node, one Magnus step, one limit at
-one time. Their first and second derivatives are CasADi's. The chain rule that puts them together is
-written out here, so that no derivative is computed that is known to vanish: this makes an iteration
-several times faster than the derivatives CasADi finds for the program written as one expression.
-All is generated as C and compiled before any clock runs.
+The derivatives of the pieces are CasADi's. The chain rule that puts them together is written out here,
+so that nothing is computed that is known to vanish. All is generated as C and compiled before any
+clock runs.
 """
 
 import hashlib
-import os
 import subprocess
 import time
-from pathlib import Path
-
-os.environ["OMP_NUM_THREADS"] = "1"
 
 import casadi as ca
 import numpy as np
-from model import Task, basis, evaluate
 
-STEPS = 24
-"""Magnus steps of sixth order, as many as `scp` makes."""
+from expressions import STEPS, limit, node, step
+from model import basis, evaluate
 
-GRID = (41, 81, 161)
+GRID = (100, 20, 40)
 """Intervals of the equal grids on which rates, accelerations and jerks are limited."""
 
 COMPILER = ["gcc", "-O3", "-march=native", "-shared", "-fPIC"]
@@ -38,111 +31,13 @@ OPTIONS = {
     "print_time": False,
     "no_nlp_grad": True,
     "ipopt.max_iter": 500,
+    # MUMPS takes most of an iteration. The program is well scaled: minimum-degree ordering without any
+    # scaling makes it some three times as fast as its defaults and changes nothing else.
+    "ipopt.linear_system_scaling": "none",
+    "ipopt.mumps_scaling": 0,
+    "ipopt.mumps_permuting_scaling": 0,
+    "ipopt.mumps_pivot_order": 0,
 }
-
-
-def base_rate(task):
-    """Function of `y = (angles, rates)`: the base's angular rate at zero momentum (eqs. 5–7)."""
-    count = len(task.links)
-    y = ca.SX.sym("y", 2 * count)
-    turned, place = ca.SX.eye(3), ca.SX(task.mount)
-    omega, velocity = ca.SX.zeros(3), ca.SX.zeros(3)
-    bodies = [(task.base_mass, ca.SX.zeros(3), velocity, omega, ca.SX(task.base_inertia))]
-    for link, angle, rate in zip(task.links, ca.vertsplit(y[:count]), ca.vertsplit(y[count:])):
-        c, s = ca.cos(angle), ca.sin(angle)
-        omega = omega + turned[:, 2] * rate
-        turned = turned @ ca.blockcat([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-        arm, step = turned @ link.centre_of_mass, turned @ link.step
-        there = turned @ link.inertia @ turned.T
-        bodies.append((link.mass, place + arm, velocity + ca.cross(omega, arm), omega, there))
-        place, velocity = place + step, velocity + ca.cross(omega, step)
-        turned = turned @ ca.sparsify(ca.DM(link.turn), 1e-15)
-    mass = sum(body[0] for body in bodies)
-    centre = sum(m * r for m, r, *_ in bodies) / mass
-    momentum, composite = ca.SX.zeros(3), ca.SX.zeros(3, 3)
-    for m, r, v, w, matrix in bodies:
-        d = r - centre
-        momentum += matrix @ w + m * ca.cross(d, v)
-        composite += matrix + m * (ca.dot(d, d) * ca.SX.eye(3) - d @ d.T)
-    a, b, c = ca.horzsplit(composite)
-    solved = ca.vertcat(*(ca.dot(momentum, ca.cross(*pair)) for pair in ((b, c), (c, a), (a, b))))
-    return ca.Function("rate", [y], [-solved / ca.dot(a, ca.cross(b, c))], {"cse": True})
-
-
-def node(task):
-    """Functions of coefficients `c` and the basis' values `p` at a node: the base's rate with its
-    Jacobian, and the Hessian of `μ` times it."""
-    count, terms = len(task.links), task.terms
-    c, p, mu = ca.SX.sym("c", count * terms), ca.SX.sym("p", 2 * terms + 2), ca.SX.sym("mu", 3)
-    rows = ca.reshape(c, terms, count).T
-    phase = task.start_phase + task.phase_change * p[2 * terms] + rows @ p[:terms]
-    slope = task.phase_change * p[2 * terms + 1] + rows @ p[terms : 2 * terms]
-    path = ca.vertcat(
-        task.amplitude * ca.sin(phase) + task.centre, task.amplitude * ca.cos(phase) * slope
-    )
-    rate = base_rate(task)
-    y, nu = ca.SX.sym("y", 2 * count), ca.SX.sym("nu", 2 * count)
-    jacobian = ca.Function("j", [y], [ca.jacobian(rate(y), y)], {"cse": True})
-    hessian, gradient = ca.hessian(ca.dot(mu, rate(y)), y)
-    second = ca.Function("h", [y, mu], [hessian, gradient], {"cse": True})
-    along = ca.jacobian(path, c)
-    bend = ca.Function("b", [c, p, nu], [ca.hessian(ca.dot(nu, path), c)[0]], {"cse": True})
-    inner, slope_of = second(path, mu)
-    curvature = along.T @ inner @ along + bend(c, p, slope_of)
-    first = ca.Function(
-        "node", [c, p], [rate(path), ca.densify(jacobian(path) @ along)], {"cse": True}
-    )
-    return first, ca.Function("node2", [c, p, mu], [ca.densify(curvature)], {"cse": True})
-
-
-def right(q):
-    """Matrix of the product with `q` on the right."""
-    w, x, y, z = ca.vertsplit(q)
-    return ca.blockcat([[w, -x, -y, -z], [x, w, z, -y], [y, -z, w, x], [z, y, -x, w]])
-
-
-def left(q):
-    """Matrix of the product with `q` on the left."""
-    w, x, y, z = ca.vertsplit(q)
-    return ca.blockcat([[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]])
-
-
-def increment(width):
-    """Function of the rates at three Gauss nodes: the quaternion of one step (Blanes, Casas, Oteo and
-    Ros 2009, doi:10.1016/j.physrep.2008.11.001, section 5.4)."""
-    rates = ca.SX.sym("w", 9)
-    w1, w2, w3 = (width * w for w in ca.vertsplit(rates, 3))
-    a1, a2, a3 = w2, (w3 - w1) * np.sqrt(15) / 3, (w3 - 2 * w2 + w1) * 10 / 3
-    c1 = ca.cross(a2, a1)
-    c2 = ca.cross(a1, 2 * a3 + c1) / 60
-    turn = a1 + a3 / 12 - ca.cross(c1 - 20 * a1 - a3, a2 + c2) / 240
-    # Cosine and sine of half the angle by their series: a step turns by less than a tenth.
-    x = ca.dot(turn, turn) / 4
-    cosine = 1 - x / 2 * (1 - x / 12 * (1 - x / 30 * (1 - x / 56)))
-    sine = (1 - x / 6 * (1 - x / 20 * (1 - x / 42))) / 2
-    return ca.Function("increment", [rates], [ca.vertcat(cosine, sine * turn)], {"cse": True})
-
-
-def step(variables):
-    """Functions of one step. `step`: attitude `q` and its Jacobian `d` after it. `step2`: with the
-    multiplier `a` of the attitude after it, that of the rates, the Hessian less the nodes' own, and the
-    multiplier of the attitude before it."""
-    q, d, a = ca.SX.sym("q", 4), ca.SX.sym("d", 4, variables), ca.SX.sym("a", 4)
-    w, j = ca.SX.sym("w", 9), ca.SX.sym("j", 9, variables)
-    turn = increment(1 / STEPS)(w)
-    turn_of = ca.jacobian(turn, w)
-    along = turn_of @ j
-    first = ca.Function(
-        "step", [q, d, w, j], [right(turn) @ q, right(turn) @ d + left(q) @ along], {"cse": True}
-    )
-    inner = left(q).T @ a
-    symbol = ca.SX.sym("b", 4)
-    own = ca.Function("own", [w, symbol], [ca.hessian(ca.dot(symbol, turn), w)[0]], {"cse": True})
-    mixed = ca.jacobian(ca.jacobian(ca.dot(a, left(q) @ symbol), q), symbol)
-    cross = d.T @ mixed @ along
-    hessian = j.T @ own(w, inner) @ j + cross + cross.T
-    outputs = [turn_of.T @ inner, ca.densify(hessian), right(turn).T @ a]
-    return first, ca.Function("step2", [q, d, a, w, j], outputs, {"cse": True})
 
 
 class Attitude:
@@ -190,33 +85,14 @@ class Limits:
     its coefficients and `t_f`, and the Hessian of `λ` times them."""
 
     def __init__(self, task, joint):
-        self.parts = [self.part(task, joint, order, GRID[order - 1]) for order in (1, 2, 3)]
+        self.parts = []
+        for order, intervals in zip((1, 2, 3), GRID):
+            times = np.linspace(0, 1, intervals + 1)
+            # At both ends rate and acceleration are zero whatever the coefficients.
+            bumps, sigma = basis(task.terms, times if order == 3 else times[1:-1])
+            places = np.vstack([np.vstack([bumps[k], sigma[k]]) for k in range(order + 1)])
+            self.parts.append((*limit(task, joint, order), places))
         self.rows = sum(places.shape[1] for *_, places in self.parts)
-
-    def part(self, task, joint, order, intervals):
-        """Functions for one order, and the basis' values on its grid."""
-        terms = task.terms
-        z, p, lam = ca.SX.sym("z", terms + 1), ca.SX.sym("p", (order + 1) * (terms + 1)), ca.SX.sym("l")
-        table = ca.reshape(p, terms + 1, order + 1)
-        s = [table[:, k].T @ ca.vertcat(z[:terms], task.phase_change[joint]) for k in range(order + 1)]
-        s[0] += task.start_phase[joint]
-        sin, cos = ca.sin(s[0]), ca.cos(s[0])
-        shape = cos * s[1]
-        if order == 2:
-            shape = cos * s[2] - sin * s[1] ** 2
-        if order == 3:
-            shape = cos * (s[3] - s[1] ** 3) - 3 * sin * s[1] * s[2]
-        share = task.amplitude[joint] / task.limits[order - 1] * shape / z[terms] ** order
-        gradient = ca.densify(ca.gradient(share, z))
-        first = ca.Function(f"limit{joint}{order}", [z, p], [share, gradient], {"cse": True})
-        hessian = ca.densify(lam * ca.hessian(share, z)[0])
-        second = ca.Function(f"bend{joint}{order}", [z, p, lam], [hessian], {"cse": True})
-        # At both ends rate and acceleration are zero whatever the coefficients.
-        times = np.linspace(0, 1, intervals + 1)
-        times = times if order == 3 else times[1:-1]
-        bumps, sigma = basis(terms, times)
-        places = np.vstack([np.vstack([bumps[k], sigma[k]]) for k in range(order + 1)])
-        return first, second, places
 
     def first(self, z):
         """Shares (rows) and their gradients, one column a row."""
@@ -238,67 +114,25 @@ class Limits:
         return total
 
 
-class Program:
-    """The program, built and compiled into a folder, ready to be solved from any start."""
-
-    def __init__(self, task, folder, options=OPTIONS):
-        self.task = task
-        joints, terms = len(task.links), task.terms
-        x, weight = ca.MX.sym("x", joints * terms + 1), ca.MX.sym("lam_f")
-        c, duration, empty = x[:-1], x[-1], ca.MX.sym("p", 0)
-        attitude, limits = Attitude(task), [Limits(task, joint) for joint in range(joints)]
-        own = [ca.vertcat(c[i * terms : (i + 1) * terms], duration) for i in range(joints)]
-        error, along, *_ = attitude.first(c)
-        shares, slopes = zip(*(limit.first(z) for limit, z in zip(limits, own)))
-        rows = ca.vertcat(error, *shares)
-        self.rows = rows.numel()
-        lam = ca.MX.sym("lam_g", self.rows)
-        cost = task.time_weight * duration
-        functions = [
-            ca.Function("nlp", [x, empty], [cost, rows], ["x", "p"], ["f", "g"]),
-            ca.Function("nlp_grad_f", [x, empty], [cost, ca.gradient(cost, x)]),
-            ca.Function("nlp_jac_g", [x, empty], [rows, jacobian(along, slopes, terms)]),
-            ca.Function(
-                "nlp_hess_l",
-                [x, empty, weight, lam],
-                [hessian(attitude.second(c, lam[:3]), limits, own, lam[3:])],
-                ["x", "p", "lam_f", "lam_g"],
-                ["hess_gamma_x_x"],
-            ),
-        ]
-        self.functions = functions
-        nlp, grad_f, jac_g, hess_lag = compiled(functions, Path(folder))
-        f, g = nlp(x, empty)
-        custom = {"grad_f": grad_f, "jac_g": jac_g, "hess_lag": hess_lag}
-        self.solver = ca.nlpsol("solver", "ipopt", {"x": x, "f": f, "g": g}, {**custom, **options})
-        box = np.tile(task.box, joints)
-        self.bounds = {
-            "lbx": np.append(-box, 0.1),
-            "ubx": np.append(box, 1000),
-            "lbg": np.append(np.zeros(3), -np.ones(self.rows - 3)),
-            "ubg": np.append(np.zeros(3), np.ones(self.rows - 3)),
-        }
-
-    def solve(self, start):
-        """Solves from coefficients of shape (joints · terms); the clock runs while IPOPT does."""
-        shape = (len(self.task.links), self.task.terms)
-        duration = evaluate(self.task, np.reshape(start, shape), steps=1).shortest
-        guess = np.append(start, duration)
-        clock = time.perf_counter()
-        solution = self.solver(x0=guess, **self.bounds)
-        seconds = time.perf_counter() - clock
-        x, stats = np.array(solution["x"]).ravel(), self.solver.stats()
-        motion = evaluate(self.task, x[:-1].reshape(shape))
-        return {
-            "coefficients": x[:-1].tolist(),
-            "j": motion.cost(self.task),
-            "t_f": motion.shortest,
-            "residual_deg": motion.residual_deg(),
-            "excess": motion.shortest / x[-1] - 1,
-            "seconds": seconds,
-            "ending": stats["return_status"],
-            "iterations": stats["iter_count"],
-        }
+def program(task):
+    """The program as CasADi's interface to IPOPT wants it: cost and rows, the cost's gradient, the
+    rows' Jacobian, the Lagrangian's Hessian."""
+    joints, terms = len(task.links), task.terms
+    x, weight, none = ca.MX.sym("x", joints * terms + 1), ca.MX.sym("w"), ca.MX.sym("p", 0)
+    c, duration = x[:-1], x[-1]
+    attitude, limits = Attitude(task), [Limits(task, joint) for joint in range(joints)]
+    own = [ca.vertcat(part, duration) for part in ca.vertsplit(c, terms)]
+    error, along, *_ = attitude.first(c)
+    shares, slopes = zip(*(limits_of.first(z) for limits_of, z in zip(limits, own)))
+    cost, rows = task.time_weight * duration, ca.vertcat(error, *shares)
+    multipliers = ca.MX.sym("l", rows.numel())
+    bend = hessian(attitude.second(c, multipliers[:3]), limits, own, multipliers[3:])
+    return [
+        ca.Function("nlp", [x, none], [cost, rows], ["x", "p"], ["f", "g"]),
+        ca.Function("nlp_grad_f", [x, none], [cost, ca.gradient(cost, x)]),
+        ca.Function("nlp_jac_g", [x, none], [rows, jacobian(along, slopes, terms)]),
+        ca.Function("nlp_hess_l", [x, none, weight, multipliers], [bend]),
+    ]
 
 
 def jacobian(along, slopes, terms):
@@ -320,16 +154,14 @@ def jacobian(along, slopes, terms):
 
 def hessian(attitude, limits, own, multipliers):
     """The Lagrangian's Hessian, upper triangle."""
-    n = attitude.shape[0] + 1
-    total, begin = ca.diagcat(attitude, 0), 0
-    total = ca.densify(total)
-    for joint, (limit, z) in enumerate(zip(limits, own)):
+    n, begin = attitude.shape[0] + 1, 0
+    total = ca.densify(ca.diagcat(attitude, 0))
+    for joint, (limits_of, z) in enumerate(zip(limits, own)):
         terms = z.numel() - 1
-        places = [*range(joint * terms, (joint + 1) * terms), n - 1]
-        select = ca.DM.eye(n)[:, places]
-        part = limit.second(z, multipliers[begin : begin + limit.rows])
+        select = ca.DM.eye(n)[:, [*range(joint * terms, (joint + 1) * terms), n - 1]]
+        part = limits_of.second(z, multipliers[begin : begin + limits_of.rows])
         total += select @ part @ select.T
-        begin += limit.rows
+        begin += limits_of.rows
     return ca.triu(total)
 
 
@@ -346,3 +178,47 @@ def compiled(functions, folder):
         (folder / f"{name}.c").write_text(source)
         subprocess.run([*COMPILER, folder / f"{name}.c", "-o", library], check=True)
     return [ca.external(function.name(), str(library)) for function in functions]
+
+
+class Solver:
+    """IPOPT, with the program built and compiled into a folder."""
+
+    def __init__(self, task, folder, options=OPTIONS):
+        self.task, self.shape = task, (len(task.links), task.terms)
+        nlp, grad_f, jac_g, hess_lag = compiled(program(task), folder)
+        x = ca.MX.sym("x", self.shape[0] * self.shape[1] + 1)
+        cost, rows = nlp(x, [])
+        custom = {"grad_f": grad_f, "jac_g": jac_g, "hess_lag": hess_lag}
+        self.ipopt = ca.nlpsol(
+            "solver", "ipopt", {"x": x, "f": cost, "g": rows}, {**custom, **options}
+        )
+        box, limits = np.tile(task.box, self.shape[0]), np.ones(rows.numel() - 3)
+        self.bounds = {
+            "lbx": np.append(-box, 0.1),
+            "ubx": np.append(box, 1000),
+            "lbg": np.append(np.zeros(3), -limits),
+            "ubg": np.append(np.zeros(3), limits),
+        }
+
+    def solve(self, start):
+        """Solves from the given coefficients and their shortest duration; the clock runs while IPOPT
+        does. What is found is evaluated densely, at the shortest duration within the limits."""
+        duration = evaluate(self.task, np.reshape(start, self.shape), steps=1).shortest
+        guess = np.append(start, duration)
+        clock = time.perf_counter()
+        solution = self.ipopt(x0=guess, **self.bounds)
+        seconds = time.perf_counter() - clock
+        x, stats = solution["x"].full().ravel(), self.ipopt.stats()
+        motion = evaluate(self.task, x[:-1].reshape(self.shape))
+        return {
+            "coefficients": x[:-1].tolist(),
+            "j": motion.cost(self.task),
+            "t_f": motion.shortest,
+            "residual_deg": motion.residual_deg(),
+            # By how much the duration found is too short for the limits at all times.
+            "excess": motion.shortest / x[-1] - 1,
+            "multiplier": float(ca.norm_2(solution["lam_g"][:3])),
+            "seconds": seconds,
+            "ending": stats["return_status"],
+            "iterations": stats["iter_count"],
+        }

@@ -118,11 +118,8 @@ def basis(terms, tau):
     window = 64 * polynomial([0, 1]) ** 3 * polynomial([1, -1]) ** 3
     bumps = [window * p(polynomial([-1, 2])) for p in orthonormal]
     step = polynomial([0, 0, 0, 10, -15, 6])
-    derivative = lambda p, order: (p.deriv(order) if order else p)(np.asarray(tau))
-    return (
-        np.array([[derivative(p, order) for p in bumps] for order in range(4)]),
-        np.array([derivative(step, order) for order in range(4)]),
-    )
+    values = np.array([[p.deriv(order)(tau) for p in (*bumps, step)] for order in range(4)])
+    return values[:, :-1], values[:, -1]
 
 
 def joint_path(task, coefficients, tau):
