@@ -18,6 +18,10 @@ lint:
 bench:
     cargo bench
 
+# scp beside CasADi and IPOPT; needs Python 3.11
+peers:
+    benches/peers/casadi/run.sh
+
 # the default experiment
 run:
     cargo run --release -- run
