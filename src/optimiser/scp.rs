@@ -20,11 +20,11 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Optimiser;
 use super::conic::{Step, Subproblem};
-use super::{Optimiser, uniform_point};
 use crate::input::{count, fraction, optional_count, positive};
 use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Linearisation, Multipliers, Piece};
+use crate::problem::{Bounds, Linearisation, Multipliers, Piece};
 
 /// Settings of sequential convex programming.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -87,18 +87,6 @@ impl Optimiser for Scp {
     }
 }
 
-/// Draws a start uniformly from the box shrunk about its middle, by the square of a number drawn
-/// uniformly from the unit interval: most tasks are solved best from near the middle, some only from
-/// far out.
-fn draw(oracle: &Oracle<'_>, rng: &mut Rng, x: &mut [f64]) {
-    let shrink = rng.unit().powi(2);
-    uniform_point(oracle, rng, x);
-    for (x, [lower, upper]) in x.iter_mut().zip(oracle.bounds().iter()) {
-        let middle = f64::midpoint(lower, upper);
-        *x = middle + shrink * (*x - middle);
-    }
-}
-
 /// The trust region's smallest radius.
 const SMALLEST: f64 = 1e-9;
 
@@ -121,12 +109,22 @@ impl Scp {
         if let Some(first) = first {
             self.follow(oracle, first)?;
         }
-        let mut x = vec![0.0; oracle.bounds().len()];
         for _ in usize::from(first.is_some())..starts {
-            draw(oracle, rng, &mut x);
-            self.follow(oracle, &x)?;
+            self.follow(oracle, &Self::start(oracle.bounds(), rng))?;
         }
         Ok(())
+    }
+
+    /// Draws a start uniformly from the box shrunk about its middle, by the square of a number drawn
+    /// uniformly from the unit interval: most tasks are solved best from near the middle, some only
+    /// from far out.
+    pub fn start(bounds: &Bounds, rng: &mut Rng) -> Vec<f64> {
+        let shrink = rng.unit().powi(2);
+        let draw = |[lower, upper]| {
+            let middle = f64::midpoint(lower, upper);
+            middle + shrink * (rng.uniform(lower, upper) - middle)
+        };
+        bounds.iter().map(draw).collect()
     }
 
     /// Follows one start to a local optimum.

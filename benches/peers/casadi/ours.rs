@@ -30,9 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Follows the first start of a seed to its end.
 fn follow(problem: &Formulated, seed: u64) -> Result<Value, Box<dyn Error>> {
-    let mut rng = Rng::new(seed);
-    let bounds = problem.bounds().iter();
-    let start: Vec<f64> = bounds.map(|[lower, upper]| rng.uniform(lower, upper)).collect();
+    let start = Scp::start(problem.bounds(), &mut Rng::new(seed));
     let watch = Watch::default();
     let mut oracle = Oracle::new(problem, u64::MAX, &watch);
     let clock = Instant::now();
