@@ -16,8 +16,9 @@ fn every_entry_replays_to_its_printed_digits() {
     for entry in BestKnown::all() {
         let (problem, assessment) = entry.replay().unwrap();
         assert_eq!(entry.fingerprint, fingerprint(&problem), "{entry}");
-        assert_eq!(format!("{:.9e}", assessment.cost), format!("{:.9e}", entry.j), "{entry}");
-        assert_eq!(assessment.penalty(), 0.0, "{entry}");
+        // Printed to ten digits, of which another order of summation may turn the last.
+        assert!((assessment.cost - entry.j).abs() < 1e-9 * entry.j, "{entry}");
+        assert!(assessment.penalty() < 1e-9, "{entry}");
         assert_eq!(entry.coefficients.len(), problem.family().joints());
         assert!(entry.coefficients.iter().all(|row| row.len() == entry.terms));
     }

@@ -15,7 +15,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::population::Population;
-use super::{Optimiser, scale_from_unit};
+use super::{Optimiser, reflect, scale_from_unit};
 use crate::input::{count, non_negative, optional_count, share};
 use crate::oracle::{Oracle, Rng, Stop};
 use crate::problem::{Formulation, Points};
@@ -98,12 +98,6 @@ impl CmaEs {
         }
         Ok(())
     }
-}
-
-/// The place in the unit interval that its mirrored copies repeat.
-fn reflect(z: f64) -> f64 {
-    let z = z.rem_euclid(2.0);
-    if z > 1.0 { 2.0 - z } else { z }
 }
 
 /// Best costs of the last generations; appendix B.3, `TolFun` and `EqualFunValues`.

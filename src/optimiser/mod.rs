@@ -61,3 +61,9 @@ fn scale_from_unit(oracle: &Oracle<'_>, z: &[f64], x: &mut [f64]) {
         *x = (lower + z * (upper - lower)).clamp(lower, upper);
     }
 }
+
+/// The place in the unit interval that its mirrored copies repeat.
+fn reflect(z: f64) -> f64 {
+    let z = z.rem_euclid(2.0);
+    if z > 1.0 { 2.0 - z } else { z }
+}

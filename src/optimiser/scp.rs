@@ -120,7 +120,7 @@ impl Scp {
     /// from far out.
     pub fn start(bounds: &Bounds, rng: &mut Rng) -> Vec<f64> {
         let shrink = rng.unit().powi(2);
-        let draw = |[lower, upper]| {
+        let draw = |[lower, upper]: [f64; 2]| {
             let middle = f64::midpoint(lower, upper);
             middle + shrink * (rng.uniform(lower, upper) - middle)
         };

@@ -140,7 +140,7 @@ fn experiments() {
         ("simplex_flat", "name = 'x'\n[[optimiser]]\nnelder-mead = { simplex = 0 }\n".to_owned()),
         (
             "tolerance_infinite",
-            "name = 'x'\n[[optimiser]]\nnelder-mead = { size_tolerance = inf }\n".to_owned(),
+            "name = 'x'\n[[optimiser]]\nnelder-mead = { cost_tolerance = inf }\n".to_owned(),
         ),
         ("step_too_large", "name = 'x'\n[[optimiser]]\ncma-es = { step = 1.5 }\n".to_owned()),
         ("no_growth", "name = 'x'\n[[optimiser]]\ncma-es = { growth = 0 }\n".to_owned()),
