@@ -185,7 +185,7 @@ fn targets_follow_the_best_known() {
     assert!(summary.contains(" above the best known, 0.781849)"), "{summary}");
     let runs = &table(&folder.path().join("one/runs"))[0];
     let targets = runs.column("targets").unwrap().list().unwrap().get_as_series(0).unwrap();
-    assert_eq!(targets.f64().unwrap().get(0), Some(0.860033));
+    assert_eq!(targets.f64().unwrap().get(0), Some(0.860_033));
     let kept = fs::read_to_string(folder.path().join("one/experiment.toml")).unwrap();
     assert!(kept.contains("targets = [0.860033, 0.789667, 0.78263]"), "{kept}");
 
