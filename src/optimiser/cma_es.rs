@@ -263,3 +263,37 @@ impl Distribution {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Weights and rates of pycma 4.5, the first and the last two of the weights.
+    #[test]
+    fn constants_agree_with_pycma() {
+        let near = |found: f64, expected: f64| {
+            assert!((found - expected).abs() < 1e-14, "{found} is not {expected}");
+        };
+        let k = Constants::new(10, 10);
+        near(k.mu_eff, 3.167_299_281_410_702);
+        near(k.c_1, 0.015_283_824_524_751_714);
+        near(k.c_mu, 0.023_551_776_650_417_47);
+        near(k.c_c, 0.294_990_383_035_622_25);
+        near(k.chi, 3.084_726_565_169_012_3);
+        near(k.w[0], 0.456_272_646_903_405_97);
+        near(k.w[8], -0.452_864_086_378_421_96);
+        near(k.w[9], -0.549_749_917_697_385_3);
+        let k = Constants::new(12, 40);
+        near(k.c_mu, 0.093_077_300_377_506_39);
+        near(k.w[0], 0.167_124_701_498_080_1);
+        near(k.w[39], -0.070_799_156_250_569_37);
+    }
+
+    #[test]
+    fn walls_reflect() {
+        for (z, expected) in [(0.25, 0.25), (-0.25, 0.25), (1.25, 0.75), (2.5, 0.5), (-3.75, 0.25)]
+        {
+            assert_eq!(reflect(z), expected);
+        }
+    }
+}
