@@ -210,6 +210,27 @@ fn shipped_experiments_are_valid() {
     }
 }
 
+/// Masses whose sum is no finite number: no cost is one either. Every run is recorded all the same, and
+/// the experiment is done.
+#[test]
+fn runs_that_find_nothing_are_recorded() {
+    let robot = include_str!("../../src/robot/xiao2023.toml");
+    let heavy = |line: &str| {
+        if line.starts_with("mass = ") { "mass = 1e308".to_owned() } else { line.to_owned() }
+    };
+    let robot: Vec<String> = robot.lines().map(heavy).collect();
+    let text = SMALL.replace("[sweep]", "[task]\nrobot = 'arm.toml'\n[sweep]");
+    let folder = Folder::new().with("small.toml", text).with("arm.toml", robot.join("\n"));
+    let output = folder.run(&["run", "small.toml", "--out", "out"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("warning: 12 of 12 runs failed or found nothing"));
+    for runs in table(&folder.path().join("out/runs")) {
+        assert_eq!(runs.column("evaluations").unwrap().u64().unwrap().get(0), Some(700));
+        assert!(runs.column("j").unwrap().get(0).unwrap().is_null());
+    }
+    assert_eq!(table(&folder.path().join("out/traces")).len(), 12);
+}
+
 /// A folder that cannot be written to is named, with exit status 1.
 #[test]
 fn unwritable_results_fail() {
