@@ -77,15 +77,17 @@ def print_checks(task, ours, ipopt):
     )
     solved = [result for result in ipopt if result["ending"] == "Solve_Succeeded"]
     weight = task.base_weight / np.sin(np.radians(0.5))
-    excess = [result["excess"] for result in solved]
+    excess = max((result["excess"] for result in solved), default=np.nan)
+    good = max((result["excess"] for result in solved if result["j"] < 1), default=np.nan)
     print(f"\nCasADi {casadi.__version__}, NumPy {np.__version__}")
     print(f"J of scp's motions, fine and by the dense evaluation here: {apart:.0e} apart at most")
     print(f"IPOPT says solved: {len(solved)} of {len(ipopt)}")
     print(f"  median iterations: {np.median([result['iterations'] for result in ipopt]):.0f}")
-    print(f"  limits exceeded between the grid's times: t_f short by {max(excess):.1e} at most,")
-    print(f"    where J < 1 by {max(r['excess'] for r in solved if r['j'] < 1):.1e}")
-    print(f"  residual: {max(result['residual_deg'] for result in solved):.1e} degrees at most")
-    largest = max(result["multiplier"] for result in solved)
+    print(f"  limits exceeded between the grid's times: t_f short by {excess:.1e} at most,")
+    print(f"    where J < 1 by {good:.1e}")
+    residual = max((result["residual_deg"] for result in solved), default=np.nan)
+    print(f"  residual: {residual:.1e} degrees at most")
+    largest = max((result["multiplier"] for result in solved), default=np.nan)
     print(f"  multiplier of the base's error: {largest:.1f} at most; the norm weighs {weight:.1f}")
 
 
