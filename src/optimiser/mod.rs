@@ -4,6 +4,7 @@ mod catalogue;
 mod cma_es;
 mod conic;
 mod de;
+mod distribution;
 mod hybrid;
 mod l_shade;
 mod nelder_mead;
