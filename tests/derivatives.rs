@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use driftless::input::Document;
 use driftless::oracle::Rng;
-use driftless::problem::{Composite, Formulated, Formulation, Multipliers, Problem, TaskFile};
+use driftless::problem::{
+    BestKnown, Composite, Formulated, Formulation, Multipliers, Problem, TaskFile,
+};
 use nalgebra::dvector;
 
-fn paper() -> Formulated {
-    let document = TaskFile::paper();
+fn paper(terms: usize) -> Formulated {
+    let document = Document::embedded("task", &format!("[trajectory]\nterms = {terms}\n"));
     let (problem, boxes) = TaskFile::read(&document).unwrap().build(&document).unwrap();
     Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes)
 }
@@ -21,7 +24,7 @@ fn difference(value: impl Fn(f64) -> f64) -> f64 {
 }
 
 fn check(x: &[f64]) {
-    let problem = paper();
+    let problem = paper(x.len() / 6);
     let here = problem.linearise(x);
     let shifted = |j: usize, step: f64| {
         let mut x = x.to_vec();
@@ -60,7 +63,7 @@ fn check(x: &[f64]) {
 
 /// The second derivative of a Lagrangian against differences of first derivatives.
 fn check_curvature(x: &[f64]) {
-    let problem = paper();
+    let problem = paper(x.len() / 6);
     let here = problem.linearise(x);
     let largest = here.pieces.iter().map(|p| p.value).fold(0.0, f64::max);
     let active = here.pieces.iter().filter(|p| p.value > 0.85 * largest);
@@ -94,25 +97,54 @@ fn check_curvature(x: &[f64]) {
     }
 }
 
+/// A point of the inner part of the box.
+fn point(terms: usize, rng: &mut Rng) -> Vec<f64> {
+    paper(terms).bounds().iter().map(|[l, u]| 0.4 * rng.uniform(l, u)).collect()
+}
+
 #[test]
 fn curvature_agrees_with_differences() {
     let mut rng = Rng::new(5);
-    for _ in 0..3 {
-        let x: Vec<f64> = paper().bounds().iter().map(|[l, u]| 0.4 * rng.uniform(l, u)).collect();
-        check_curvature(&x);
+    for terms in 1..=4 {
+        check_curvature(&point(terms, &mut rng));
     }
 }
 
 #[test]
 fn agree_with_differences() {
     let mut rng = Rng::new(11);
-    for _ in 0..5 {
-        let x: Vec<f64> = paper().bounds().iter().map(|[l, u]| 0.5 * rng.uniform(l, u)).collect();
-        check(&x);
+    for terms in [1, 2, 2, 2, 3, 5, 8] {
+        check(&point(terms, &mut rng));
+    }
+}
+
+/// A linearisation knows the same cost as an evaluation, though it looks for all peaks.
+#[test]
+fn linearisations_and_evaluations_give_the_same_cost() {
+    let mut rng = Rng::new(3);
+    for terms in 1..=6 {
+        let problem = paper(terms);
+        for i in 0..200 {
+            let shrink = if i == 0 { 0.0 } else { rng.unit() };
+            let x: Vec<f64> =
+                problem.bounds().iter().map(|[l, u]| shrink * rng.uniform(l, u)).collect();
+            let (found, expected) = (problem.linearise(&x).cost(), problem.evaluate(&x).cost);
+            assert!((found - expected).abs() < 1e-12 * expected, "{terms} {i}: {found} {expected}");
+        }
     }
 }
 
 #[test]
 fn agree_with_differences_without_bumps() {
     check(&[0.0; 12]);
+}
+
+/// At the best motion known the norm has a kink, its parts have none.
+#[test]
+fn agree_with_differences_at_zero_residual() {
+    let best = BestKnown::of(paper(2).task()).unwrap();
+    let x: Vec<f64> = best.coefficients.concat();
+    assert!(paper(2).linearise(&x).residual.norm() < 1e-7);
+    check(&x);
+    check_curvature(&x);
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use driftless::attitude::net_rotation;
 use driftless::input::Document;
-use driftless::momentum::{base_twist, total_momentum};
+use driftless::momentum::{RateSlopes, base_map, base_twist, total_momentum};
 use driftless::problem::{
     Accuracy, Boxes, Formulated, Formulation, Problem, Reorientation, TaskFile,
 };
@@ -126,6 +126,37 @@ proptest! {
             total_momentum(&robot, angles, rates, &base_twist(&robot, angles, rates));
         prop_assert!(linear.norm() < 1e-10, "{linear}");
         prop_assert!(angular.norm() < 1e-10, "{angular}");
+    }
+
+    /// Derivatives of the base's rate in closed form against differences, and against unit rates.
+    #[test]
+    fn rate_slopes_are_derivatives_for_any_arm(
+        rows in rows(),
+        angles in prop::collection::vec(-5.0..5.0, 8),
+        rates in prop::collection::vec(-2.0..2.0, 8),
+    ) {
+        let robot = robot(&rows);
+        let (angles, rates) = (&angles[..rows.len()], &rates[..rows.len()]);
+        let mut slopes = RateSlopes::new(&robot);
+        slopes.evaluate(&robot, angles, rates);
+        let map = base_map(&robot, angles);
+        let here = base_twist(&robot, angles, rates).angular;
+        prop_assert!((slopes.angular - here).norm() < 1e-12 * (1.0 + here.norm()));
+        for j in 0..rows.len() {
+            let at = |step: f64| {
+                let mut angles = angles.to_vec();
+                angles[j] += step;
+                base_twist(&robot, &angles, rates).angular
+            };
+            let h = 1e-3;
+            let near = (at(h) - at(-h)) / (2.0 * h);
+            let far = (at(2.0 * h) - at(-2.0 * h)) / (4.0 * h);
+            let expected = (near * 4.0 - far) / 3.0;
+            let miss = (slopes.by_angle[j] - expected).norm();
+            prop_assert!(miss < 1e-8 * (1.0 + expected.norm()), "{j}: {miss:e}");
+            let miss = (slopes.by_rate[j] - map.fixed_view::<3, 1>(3, j)).norm();
+            prop_assert!(miss < 1e-12, "{j}: {miss:e}");
+        }
     }
 
     /// Four states at once, one a lane, agree with one at a time.

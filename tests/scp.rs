@@ -6,22 +6,16 @@ use std::sync::Arc;
 use driftless::input::Document;
 use driftless::optimiser::{De, Ending, Hybrid, Optimiser, Scp, Settings};
 use driftless::oracle::{Oracle, Rng, Stop, Watch};
-use driftless::problem::{Formulated, Formulation, Problem, TaskFile};
+use driftless::problem::{Composite, Formulated, Formulation, Problem, TaskFile};
+use nalgebra::DVector;
 
-/// The best motion known with two terms a joint, found by `CasADi` and IPOPT 3.14 on a grid of 601
-/// points; `benches/peers/casadi` does it again.
+/// The best motion known with two terms a joint, which IPOPT finds too: `benches/peers/casadi`.
 const BEST_KNOWN: f64 = 0.781_850;
 
 fn task(text: &str) -> Formulated {
     let document = Document::embedded("task", text);
     let (problem, boxes) = TaskFile::read(&document).unwrap().build(&document).unwrap();
     Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes)
-}
-
-/// A start as `scp` draws it, but anywhere in the box.
-fn anywhere(problem: &Formulated, seed: u64, shrink: f64) -> Vec<f64> {
-    let mut rng = Rng::new(seed);
-    problem.bounds().iter().map(|[l, u]| shrink * rng.uniform(l, u)).collect()
 }
 
 /// A polynomial in `τ`, lowest power first.
@@ -119,7 +113,8 @@ fn single_starts_find_it_often() {
     assert!(found >= 45, "{found} of 100");
 }
 
-/// Thresholds from `CasADi` and IPOPT 3.14 with as many terms: 6.31490 s and 6.14654 s.
+/// The thresholds are durations of 6.3150 s and 6.1466 s. IPOPT, with exact derivatives from `CasADi`
+/// and limits at the peaks it found, ended at 6.31490 s and 6.14654 s.
 #[test]
 fn more_terms_are_faster() {
     for (terms, threshold) in [(3, 0.631_50), (4, 0.614_66)] {
@@ -134,24 +129,41 @@ fn more_terms_are_faster() {
     }
 }
 
-/// No smooth descent from the end of a search leads further down: the first-order conditions hold.
+/// Random steps along which the base's end stays, brought back onto it, find nothing lower.
 #[test]
 fn ends_where_nothing_near_is_better() {
     let problem = task("");
     let watch = Watch::default();
-    for seed in 1..=5 {
+    for seed in 1..=10 {
         let mut oracle = Oracle::new(&problem, 150_000, &watch);
-        let ending = Scp::default().follow(&mut oracle, &anywhere(&problem, seed, 0.5));
-        assert_eq!(ending, Ok(Ending::Optimal), "seed {seed}");
+        let start = Scp::start(problem.bounds(), &mut Rng::new(seed));
+        assert_eq!(Scp::default().follow(&mut oracle, &start), Ok(Ending::Optimal), "seed {seed}");
         let best = oracle.best().unwrap().clone();
+        let jacobian = problem.linearise(&best.x).residual_jacobian;
+        let inverse = jacobian.clone().pseudo_inverse(1e-9).unwrap();
         let mut rng = Rng::new(seed);
-        for _ in 0..300 {
-            let step: Vec<f64> = best.x.iter().map(|_| 1e-4 * rng.uniform(-1.0, 1.0)).collect();
-            let x: Vec<f64> = best.x.iter().zip(&step).map(|(x, d)| x + d).collect();
-            let cost = problem.evaluate(&x).cost;
-            assert!(cost > best.evaluation.cost - 1e-9, "seed {seed}: {cost}");
+        for _ in 0..500 {
+            let any = DVector::from_fn(best.x.len(), |_, _| 1e-4 * rng.uniform(-1.0, 1.0));
+            let step = &any - &inverse * (&jacobian * &any);
+            let mut x = DVector::from_column_slice(&best.x) + step;
+            for _ in 0..2 {
+                x -= &inverse * problem.linearise(x.as_slice()).residual;
+            }
+            let cost = problem.evaluate(x.as_slice()).cost;
+            assert!(cost > best.evaluation.cost - 1e-8, "seed {seed}: {cost}");
         }
     }
+}
+
+/// With all weight on the base any motion that brings it there is best.
+#[test]
+fn brings_the_base_home_when_time_is_free() {
+    let problem = task("[task.weights]\nbase = 1\n");
+    let watch = Watch::default();
+    let mut oracle = Oracle::new(&problem, 1_000, &watch);
+    let start = Scp::start(problem.bounds(), &mut Rng::new(1));
+    assert_eq!(Scp::default().follow(&mut oracle, &start), Ok(Ending::Optimal));
+    assert!(oracle.best().unwrap().evaluation.cost < 1e-6);
 }
 
 #[test]
@@ -159,33 +171,32 @@ fn refines_what_another_optimiser_found() {
     let problem = task("");
     let watch = Watch::default();
     let search = Box::new(Settings::De(De::default()));
-    let hybrid = Hybrid { search, share: 0.2, ..Hybrid::default() };
-    let mut oracle = Oracle::new(&problem, 10_000, &watch);
-    assert_eq!(hybrid.minimise(&mut oracle, &mut Rng::new(1)), Ok(()));
-    assert!(oracle.evaluations() > 2_000 && oracle.evaluations() < 3_000);
-    assert!(oracle.linearisations() == oracle.evaluations() - 2_000);
+    let hybrid = Hybrid { search, share: 0.4, ..Hybrid::default() };
+    let mut oracle = Oracle::new(&problem, 5_000, &watch);
+    let stop = hybrid.minimise(&mut oracle, &mut Rng::new(1));
+    assert_eq!((stop, oracle.evaluations()), (Err(Stop::BudgetSpent), 5_000));
+    // Two rounds of 2000 and a part of a third.
+    let steps = oracle.linearisations();
+    assert!((20..1_000).contains(&steps), "{steps}");
     let refined = oracle.best().unwrap().evaluation.cost;
 
-    let mut alone = Oracle::new(&problem, 2_000, &watch);
+    let mut alone = Oracle::new(&problem, 5_000, &watch);
     let stop = De::default().minimise(&mut alone, &mut Rng::new(1));
     assert_eq!(stop, Err(Stop::BudgetSpent));
     assert!(refined < alone.best().unwrap().evaluation.cost);
 }
 
 #[test]
-fn stays_within_its_budget() {
-    let problem = task("");
+fn budgets_are_kept_and_the_box_not_left() {
     for budget in 1..=60 {
         let optimisers: [&dyn Optimiser; 2] = [&Scp::default(), &Hybrid::default()];
         for optimiser in optimisers {
+            let problem = task("[trajectory.box]\ncoefficient = [0.3, 0.1]\n");
             let watch = Watch::default();
             let mut oracle = Oracle::new(&problem, budget, &watch);
             let stop = optimiser.minimise(&mut oracle, &mut Rng::new(budget));
-            let spent = oracle.evaluations();
-            match stop {
-                Ok(()) => assert!(spent <= budget, "{spent} of {budget}"),
-                Err(stop) => assert_eq!((stop, spent), (Stop::BudgetSpent, budget)),
-            }
+            assert_eq!((stop, oracle.evaluations()), (Err(Stop::BudgetSpent), budget));
+            assert!(problem.bounds().contains(&oracle.best().unwrap().x));
         }
     }
 }

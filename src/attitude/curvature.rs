@@ -20,20 +20,19 @@ pub struct RotationCurvature {
 /// Step of the differences that stand for the second derivatives of the base's rate.
 const STEP: f64 = 1e-5;
 
-/// First and second derivative, by the midpoint rule.
+/// First and second derivative, by the midpoint rule: of second order, so for a few digits.
 ///
-/// Bumps vanish to the second order at both ends, so the rule converges faster than any power of the
-/// step. The base's rate `ω` bends with the coefficients, and what a node adds to the end, `e`, is
-/// turned by the nodes that follow it, hence
+/// The base's rate `ω` bends with the coefficients, and what a node adds to the end, `e`, is turned by
+/// the nodes that follow it, hence with the given vector `p`
 ///
 /// ```text
-///     Σ_n  Q_n m · ∂²ω/∂c_k ∂c_l  +  m · (e_nk × Σ_{m>n} e_ml)      symmetric in k and l
+///     Σ_n  Q_n p · ∂²ω/∂c_k ∂c_l  +  p · (e_nk × Σ_{m>n} e_ml)      symmetric in k and l
 /// ```
 pub fn net_rotation_curvature(
     robot: &Robot,
     path: &Path<'_, f64>,
     steps: usize,
-    multiplier: &Vector3<f64>,
+    p: &Vector3<f64>,
 ) -> RotationCurvature {
     let width = 1.0 / steps as f64;
     let dimension = path.dimension();
@@ -50,9 +49,9 @@ pub fn net_rotation_curvature(
         let turn: Matrix3<f64> = following.inverse().to_rotation_matrix().into_inner() * width;
         own.fill(0.0);
         node.add_slopes(path.basis(), tau, &turn, &mut own);
-        curvature.gemm_tr(1.0, &(multiplier.cross_matrix() * &own), &by_coefficient, 1.0);
+        curvature.gemm_tr(1.0, &(p.cross_matrix() * &own), &by_coefficient, 1.0);
         by_coefficient += &own;
-        let bent = bend(&node, &mut beside, robot, path, &turn.tr_mul(multiplier));
+        let bent = bend(&node, &mut beside, robot, path, &turn.tr_mul(p));
         add_bend(&bent, path.basis(), tau, &mut curvature);
         following = half * following;
     }
@@ -90,7 +89,8 @@ fn bend(
     bend
 }
 
-/// Adds half of what the bend means for the coefficients and leaves the other half to the transpose.
+/// Adds what the bend means for the coefficients, once symmetrised; of the mixed derivatives both
+/// halves stand on one side.
 fn add_bend(bend: &Bend, basis: &Basis, tau: f64, sum: &mut DMatrix<f64>) {
     let terms = basis.terms();
     let bumps: Vec<[f64; 2]> = basis.bumps(tau).collect();

@@ -4,10 +4,9 @@ use nalgebra::{Matrix3, Matrix3xX, Vector3};
 
 use crate::momentum::RateSlopes;
 use crate::robot::Robot;
-use crate::trajectory::{Basis, Path};
+use crate::trajectory::{AtPhase, Basis, Path};
 
 /// The base's rate at one time of a path, with its derivatives by each joint's phase `s` and by `s'`.
-#[derive(Clone)]
 pub(super) struct Node {
     /// `s` and `s'` of each joint.
     pub(super) phases: Vec<[f64; 2]>,
@@ -15,6 +14,7 @@ pub(super) struct Node {
     pub(super) by_phase: Vec<Vector3<f64>>,
     /// `∂ω/∂s'`.
     pub(super) by_phase_rate: Vec<Vector3<f64>>,
+    joints: Vec<AtPhase<f64>>,
     angles: Vec<f64>,
     rates: Vec<f64>,
     slopes: RateSlopes<f64>,
@@ -28,6 +28,7 @@ impl Node {
             phases: vec![[0.0; 2]; joints],
             by_phase: vectors.clone(),
             by_phase_rate: vectors,
+            joints: Vec::with_capacity(joints),
             angles: numbers.clone(),
             rates: numbers,
             slopes: RateSlopes::new(robot),
@@ -43,13 +44,13 @@ impl Node {
 
     /// The same at phases written before, whether the path meets them or not.
     pub(super) fn evaluate_at_phases(&mut self, robot: &Robot, path: &Path<'_, f64>) {
-        for (j, joint) in path.joints().enumerate() {
-            let at = joint.at_phase(self.phases[j]);
+        self.joints.clear();
+        self.joints.extend(path.joints().zip(&self.phases).map(|(joint, s)| joint.at_phase(*s)));
+        for (j, at) in self.joints.iter().enumerate() {
             (self.angles[j], self.rates[j]) = (at.angle, at.rate);
         }
         self.slopes.evaluate(robot, &self.angles, &self.rates);
-        for (j, joint) in path.joints().enumerate() {
-            let at = joint.at_phase(self.phases[j]);
+        for (j, at) in self.joints.iter().enumerate() {
             let (by_angle, by_rate) = (self.slopes.by_angle[j], self.slopes.by_rate[j]);
             self.by_phase[j] = by_angle * at.angle_slope + by_rate * at.rate_slope;
             self.by_phase_rate[j] = by_rate * at.angle_slope;
@@ -69,14 +70,12 @@ impl Node {
         turn: &Matrix3<f64>,
         sum: &mut Matrix3xX<f64>,
     ) {
-        let terms = basis.terms();
-        for (j, (by_phase, by_phase_rate)) in
-            self.by_phase.iter().zip(&self.by_phase_rate).enumerate()
-        {
-            let (value, slope) = (turn * by_phase, turn * by_phase_rate);
-            for (k, [bump, bump_slope]) in basis.bumps(tau).enumerate() {
-                let mut column = sum.column_mut(j * terms + k);
-                column += value * bump + slope * bump_slope;
+        for (k, [bump, bump_slope]) in basis.bumps(tau).enumerate() {
+            let columns = (k..).step_by(basis.terms());
+            for (j, column) in (0..self.joints.len()).zip(columns) {
+                let change = self.by_phase[j] * bump + self.by_phase_rate[j] * bump_slope;
+                let mut column = sum.column_mut(column);
+                column += turn * change;
             }
         }
     }

@@ -41,6 +41,9 @@ pub(super) struct Plan {
     files: MotionFiles,
 }
 
+/// A residual above it is worth a warning.
+const GOAL_REACHED_DEG: f64 = 0.01;
+
 #[derive(Debug, Serialize)]
 struct PlanJson<'a> {
     task: String,
@@ -54,6 +57,7 @@ struct PlanJson<'a> {
     shape: ShapeJson,
     evaluations: u64,
     linearisations: u64,
+    curvatures: u64,
     conic_solves: u64,
     seconds: f64,
 }
@@ -65,6 +69,7 @@ struct Found {
     assessment: Assessment,
     evaluations: u64,
     linearisations: u64,
+    curvatures: u64,
     conic_solves: u64,
     seconds: f64,
     interrupted: bool,
@@ -99,6 +104,13 @@ impl Plan {
             }
             say!("  {} evaluations in {:.2} s", found.evaluations, found.seconds);
         }
+        let residual = found.assessment.residual().to_degrees();
+        if residual > GOAL_REACHED_DEG {
+            eprintln!(
+                "warning: the base ends {residual:.3}° from its goal; more terms, a wider box, a larger \
+                 budget or a larger `weights.base` may bring it there"
+            );
+        }
         self.say_entry(&found, file.task);
         self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
         if found.interrupted {
@@ -130,6 +142,7 @@ impl Plan {
             assessment,
             evaluations: oracle.evaluations(),
             linearisations: oracle.linearisations(),
+            curvatures: oracle.curvatures(),
             conic_solves: oracle.conic_solves(),
             seconds,
             interrupted,
@@ -170,6 +183,7 @@ impl Plan {
             shape: ShapeJson::new(family, coefficients, assessment.duration),
             evaluations: found.evaluations,
             linearisations: found.linearisations,
+            curvatures: found.curvatures,
             conic_solves: found.conic_solves,
             seconds: found.seconds,
         };

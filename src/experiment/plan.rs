@@ -16,7 +16,7 @@ use crate::problem::{Accuracy, Boxes};
 use crate::task::Task;
 
 /// Raised when a change makes the same run give another result.
-const PROBLEM_VERSION: u32 = 1;
+const RESULT_VERSION: u32 = 2;
 
 /// An experiment spelt out.
 #[derive(Debug, Clone)]
@@ -218,7 +218,7 @@ fn recipe(instance: &Instance, settings: &Settings, seed: u64, budget: u64) -> S
         Subject::Other { name, .. } => Identity::Other { problem: name, instance: &instance.label },
     };
     let recipe = Recipe {
-        version: PROBLEM_VERSION,
+        version: RESULT_VERSION,
         format: FORMAT,
         subject,
         optimiser: settings,

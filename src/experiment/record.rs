@@ -87,7 +87,7 @@ pub(super) struct Ended<'a> {
 }
 
 /// Version of the stored tables; raised when a column changes.
-pub(super) const FORMAT: u64 = 2;
+pub(super) const FORMAT: u64 = 3;
 
 impl Record {
     pub(super) fn new(plan: &Plan, run: &RunSpec, ended: Ended<'_>) -> PolarsResult<Self> {
@@ -162,6 +162,7 @@ fn row(
         "coefficients" => list(motion.as_ref().map(|(coefficients, _)| coefficients)),
         "evaluations" => [oracle.evaluations()],
         "linearisations" => [oracle.linearisations()],
+        "curvatures" => [oracle.curvatures()],
         "conic_solves" => [oracle.conic_solves()],
         "conic_failures" => [oracle.conic_failures()],
         "seconds" => [seconds.as_secs_f64()],

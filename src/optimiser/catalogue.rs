@@ -2,6 +2,7 @@
 
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::{CmaEs, De, Hybrid, LShade, NelderMead, Optimiser, Pso, RandomSearch, Scp};
 use crate::problem::Formulation;
@@ -90,17 +91,19 @@ impl Settings {
 
     /// The settings that differ from the default, as `name=value`; the formulation is left out.
     pub fn changed(&self) -> Vec<String> {
+        let default = match self {
+            // Beside the same search with its default settings.
+            Self::Hybrid(hybrid) => Self::by_name(hybrid.search.name()).map(|search| {
+                Self::Hybrid(Hybrid { search: Box::new(search), ..Hybrid::default() })
+            }),
+            plain => Self::by_name(plain.name()),
+        };
         let values = |settings: &Self| serde_json::to_value(settings).unwrap_or_default();
-        let (own, default) = (values(self), Self::by_name(self.name()).as_ref().map(values));
-        let own = own.get(self.name()).and_then(|table| table.as_object()).cloned();
-        let default = default.as_ref().and_then(|d| d.get(self.name()));
-        own.into_iter()
-            .flatten()
-            .filter(|(name, value)| {
-                name != "formulation" && default.and_then(|d| d.get(name)) != Some(value)
-            })
-            .map(|(name, value)| format!("{name}={}", toml_value(&value)))
-            .collect()
+        let mut changed = Vec::new();
+        if let Some(default) = default {
+            differences("", &values(self), &values(&default), &mut changed);
+        }
+        changed
     }
 
     /// Every setting with its default and its meaning, from the documentation of its field.
@@ -123,11 +126,24 @@ impl Settings {
     }
 }
 
+/// Adds every value that another table does not have as `name=value`, with the innermost name only.
+fn differences(name: &str, own: &Value, other: &Value, found: &mut Vec<String>) {
+    match (own, other) {
+        (Value::Object(own), _) => {
+            for (name, value) in own.iter().filter(|(name, _)| *name != "formulation") {
+                differences(name, value, other.get(name).unwrap_or(&Value::Null), found);
+            }
+        }
+        _ if own != other => found.push(format!("{name}={}", toml_value(own))),
+        _ => {}
+    }
+}
+
 /// A JSON value as one writes it in TOML.
-fn toml_value(value: &serde_json::Value) -> String {
+fn toml_value(value: &Value) -> String {
     match value {
-        serde_json::Value::Null => "none".to_owned(),
-        serde_json::Value::Object(map) => {
+        Value::Null => "none".to_owned(),
+        Value::Object(map) => {
             let pairs: Vec<_> =
                 map.iter().map(|(k, v)| format!("{k} = {}", toml_value(v))).collect();
             format!("{{ {} }}", pairs.join(", "))

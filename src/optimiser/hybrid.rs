@@ -1,4 +1,5 @@
-//! Any other optimiser first, then [`Scp`] from the best point it found.
+//! An optimiser without derivatives, then [`Scp`] from the best point it found; again and again while
+//! the budget lasts.
 
 use schemars::JsonSchema;
 use serde::de::{Deserializer, Error as _};
@@ -14,10 +15,10 @@ use crate::problem::Formulation;
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct Hybrid {
     /// optimiser that searches first, with its settings, such as `{ de = { weight = 0.7 } }`
-    #[serde(deserialize_with = "time_free")]
+    #[serde(deserialize_with = "to_refine")]
     #[schemars(with = "serde_json::Value")]
     pub search: Box<Settings>,
-    /// share of the budget that it may spend
+    /// share of the budget that it may spend at a time
     #[serde(deserialize_with = "share")]
     pub share: f64,
     /// settings of `scp`, whose first start is the best point found
@@ -27,13 +28,18 @@ pub struct Hybrid {
 impl Default for Hybrid {
     fn default() -> Self {
         let search = Box::new(Settings::LShade(LShade::default()));
-        Self { search, share: 0.1, refine: Scp::default() }
+        Self { search, share: 0.02, refine: Scp::default() }
     }
 }
 
-/// An optimiser that searches the variables in which there are derivatives.
-fn time_free<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Box<Settings>, D::Error> {
+/// An optimiser that needs no derivatives, in the variables that have them.
+fn to_refine<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Box<Settings>, D::Error> {
     let settings = Settings::deserialize(deserializer)?;
+    if settings.optimiser().needs_derivatives() {
+        let found = settings.name();
+        let expected = "an optimiser that needs no derivatives";
+        return Err(D::Error::custom(format!("found `{found}`, expected {expected}")));
+    }
     match settings.formulation() {
         Formulation::TimeFree => Ok(Box::new(settings)),
         other => Err(D::Error::custom(format!(
@@ -45,10 +51,12 @@ fn time_free<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Box<Settings>
 
 impl Optimiser for Hybrid {
     fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
-        let evaluations = (self.share * oracle.remaining() as f64).ceil() as u64;
-        oracle.within(evaluations, |oracle| self.search.optimiser().minimise(oracle, rng))?;
-        let found = oracle.best().map(|best| best.x.clone());
-        self.refine.minimise_from(found.as_deref(), oracle, rng)
+        let round = (self.share * oracle.remaining() as f64).ceil() as u64;
+        loop {
+            let search = |oracle: &mut Oracle<'_>| self.search.optimiser().minimise(oracle, rng);
+            let found = oracle.within(round, search)?;
+            self.refine.minimise_from(found.as_ref().map(|best| &*best.x), oracle, rng)?;
+        }
     }
 
     fn needs_derivatives(&self) -> bool {

@@ -2,7 +2,6 @@
 
 mod catalogue;
 mod cma_es;
-mod conic;
 mod de;
 mod distribution;
 mod hybrid;
@@ -44,9 +43,9 @@ pub trait Optimiser: Sync {
     }
 }
 
-/// The cost to compare points by: what is no number is as bad as can be.
+/// The cost to compare points by: what is infinite or no number is as bad as can be.
 fn rank(evaluation: &Evaluation) -> f64 {
-    if evaluation.cost.is_nan() { f64::INFINITY } else { evaluation.cost }
+    if evaluation.cost.is_finite() { evaluation.cost } else { f64::INFINITY }
 }
 
 /// Writes a point drawn uniformly from the oracle's box.

@@ -2,19 +2,18 @@
 //! crate argmin.
 //!
 //! It moves within the box scaled to the unit cube, so that the units of the variables do not matter.
-//! Beyond a wall the cost is continued by reflection. When the costs of a simplex have become the same
-//! the next one starts.
+//! Beyond a wall the cost is continued by reflection. When a simplex no longer gains the next one
+//! starts: argmin would stop at equal costs, which a simplex that lies along a level has too early.
 
 use std::cell::{Cell, RefCell};
+use std::num::NonZeroU32;
 
-use argmin::core::{
-    CostFunction, Error, IterState, Problem, Solver, State as _, TerminationStatus,
-};
+use argmin::core::{CostFunction, Error, IterState, Problem, Solver as _, State as _};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Optimiser, rank, reflect, scale_from_unit};
-use crate::input::{positive, share};
+use crate::input::{count, positive, share};
 use crate::oracle::{Oracle, Rng, Stop};
 use crate::problem::Formulation;
 
@@ -27,14 +26,22 @@ pub struct NelderMead {
     /// length of the first simplex's edges along the axes, as a fraction of the box's width
     #[serde(deserialize_with = "share")]
     pub simplex: f64,
-    /// a start ends when the standard deviation of the simplex's costs is below this
+    /// a start ends when the best cost falls by less than this while its patience lasts
     #[serde(deserialize_with = "positive")]
     pub cost_tolerance: f64,
+    /// evaluations to wait for such a fall, for each variable
+    #[serde(deserialize_with = "count::<1_000_000, _, _>")]
+    pub patience: NonZeroU32,
 }
 
 impl Default for NelderMead {
     fn default() -> Self {
-        Self { formulation: Formulation::TimeFree, simplex: 0.1, cost_tolerance: 1e-9 }
+        Self {
+            formulation: Formulation::TimeFree,
+            simplex: 0.1,
+            cost_tolerance: 1e-12,
+            patience: NonZeroU32::MIN.saturating_add(29),
+        }
     }
 }
 
@@ -54,22 +61,24 @@ impl Optimiser for NelderMead {
 impl NelderMead {
     /// Moves a simplex from a point of the unit cube until it has collapsed.
     fn follow(&self, oracle: &mut Oracle<'_>, start: &[f64]) -> Result<(), Stop> {
-        let stop = Cell::new(None);
-        let mut problem = Problem::new(UnitCube { oracle: RefCell::new(oracle), stop: &stop });
-        let mut solver = argmin::solver::neldermead::NelderMead::new(self.simplex(start))
-            .with_sd_tolerance(self.cost_tolerance)
-            .unwrap_or_else(|error| unreachable!("the tolerance is positive: {error}"));
+        let patience = u64::from(self.patience.get()) * start.len() as u64;
+        let (mut gained, mut lowest) = (oracle.evaluations(), f64::INFINITY);
+        let view = UnitCube { oracle: RefCell::new(oracle), stop: Cell::new(None) };
+        let mut problem = Problem::new(&view);
+        let mut solver = argmin::solver::neldermead::NelderMead::new(self.simplex(start));
         let mut state = solver.init(&mut problem, IterState::new());
         loop {
-            if let Some(stop) = stop.get() {
+            if let Some(stop) = view.stop.get() {
                 return Err(stop);
             }
-            let (next, _) = state.unwrap_or_else(|error| unreachable!("costs compare: {error}"));
-            let status = Solver::<UnitCube<'_, '_>, _>::terminate(&mut solver, &next);
-            if status != TerminationStatus::NotTerminated {
+            let (simplex, _) = state.unwrap_or_else(|error| unreachable!("costs compare: {error}"));
+            let now = view.oracle.borrow().evaluations();
+            if simplex.cost < lowest - self.cost_tolerance {
+                (gained, lowest) = (now, simplex.cost);
+            } else if now - gained > patience {
                 return Ok(());
             }
-            state = solver.next_iter(&mut problem, next);
+            state = solver.next_iter(&mut problem, simplex);
         }
     }
 
@@ -88,10 +97,10 @@ impl NelderMead {
 struct UnitCube<'a, 'b> {
     oracle: RefCell<&'a mut Oracle<'b>>,
     /// Why the oracle answers no more.
-    stop: &'a Cell<Option<Stop>>,
+    stop: Cell<Option<Stop>>,
 }
 
-impl CostFunction for UnitCube<'_, '_> {
+impl CostFunction for &UnitCube<'_, '_> {
     type Param = Vec<f64>;
     type Output = f64;
 

@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Optimiser, uniform_point};
-use crate::input::{count, finite, fraction, non_negative, positive};
+use crate::input::{count, finite, non_negative, positive, share};
 use crate::oracle::{Oracle, Rng, Stop};
 use crate::problem::{Evaluation, Formulation, Points};
 
@@ -40,7 +40,7 @@ pub struct Pso {
     #[serde(deserialize_with = "positive")]
     pub delta: f64,
     /// largest velocity component, as a fraction of the box's width
-    #[serde(deserialize_with = "fraction")]
+    #[serde(deserialize_with = "share")]
     pub velocity_limit: f64,
     /// what happens to a particle at a wall of the box
     pub walls: Walls,

@@ -87,6 +87,8 @@ pub struct Oracle<'a> {
     conic_solves: u64,
     conic_failures: u64,
     best: Option<Best>,
+    /// The best of the search that is [`within`](Self::within).
+    best_within: Option<Best>,
     trace: Vec<TracePoint>,
 }
 
@@ -105,6 +107,7 @@ impl<'a> Oracle<'a> {
             conic_solves: 0,
             conic_failures: 0,
             best: None,
+            best_within: None,
             trace: Vec::new(),
         }
     }
@@ -220,27 +223,29 @@ impl<'a> Oracle<'a> {
     }
 
     /// Counts the conic subproblem that `solve` solves, or fails to.
-    pub fn conic<S>(&mut self, solve: impl FnOnce() -> Option<S>) -> Option<S> {
+    pub fn conic<S>(&mut self, solve: impl FnOnce() -> Option<S>) -> Result<Option<S>, Stop> {
+        self.check()?;
         self.conic_solves += 1;
         let solution = solve();
         self.conic_failures += u64::from(solution.is_none());
-        solution
+        Ok(solution)
     }
 
-    /// Lets a search spend so many of the evaluations left, at most. Where only these are spent, and
-    /// not the whole budget, that is no reason to stop.
+    /// Lets a search spend so many of the evaluations left, at most, and gives the best that it found.
+    /// Where only these are spent, and not the whole budget, that is no reason to stop.
     pub fn within(
         &mut self,
         evaluations: u64,
         search: impl FnOnce(&mut Self) -> Result<(), Stop>,
-    ) -> Result<(), Stop> {
+    ) -> Result<Option<Best>, Stop> {
         let budget = self.budget;
         self.budget = budget.min(self.evaluations.saturating_add(evaluations));
+        self.best_within = None;
         let outcome = search(self);
         self.budget = budget;
         match outcome {
-            Err(Stop::BudgetSpent) if self.remaining() > 0 => Ok(()),
-            outcome => outcome,
+            Err(stop) if stop != Stop::BudgetSpent || self.remaining() == 0 => Err(stop),
+            _ => Ok(self.best_within.take()),
         }
     }
 
@@ -275,8 +280,16 @@ impl<'a> Oracle<'a> {
     }
 
     fn record(&mut self, x: &[f64], evaluation: Evaluation) {
-        let best = self.best.as_ref().map_or(f64::INFINITY, |b| b.evaluation.cost);
-        if evaluation.cost.is_finite() && evaluation.cost < best {
+        let lower = |best: &Option<Best>| {
+            best.as_ref().is_none_or(|best| evaluation.cost < best.evaluation.cost)
+        };
+        if !evaluation.cost.is_finite() {
+            return;
+        }
+        if lower(&self.best_within) {
+            self.best_within = Some(Best { x: x.to_vec(), evaluation });
+        }
+        if lower(&self.best) {
             self.best = Some(Best { x: x.to_vec(), evaluation });
             self.trace.push(TracePoint {
                 evaluation: self.evaluations,

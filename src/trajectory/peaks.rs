@@ -147,24 +147,30 @@ fn peak(joint: &JointPath<'_, f64>, order: usize, samples: &[Sample], width: f64
     best
 }
 
-/// The local maxima of one derivative's absolute value, both ends included where it falls away from
-/// them.
+/// The local maxima of one derivative's absolute value: those of arches between two samples, and
+/// samples, the ends among them, that no neighbour exceeds.
 fn local_peaks<'a>(
     joint: &'a JointPath<'_, f64>,
     order: usize,
     samples: &'a [Sample],
     width: f64,
 ) -> impl Iterator<Item = Peak> + 'a {
-    let falls = move |s: &Sample, outward: f64| s[order] * s[order + 1] * outward > 0.0;
-    let end = |s: &Sample, tau| Peak { value: s[order].abs(), tau };
-    let last = samples.len() - 1;
-    let start = falls(&samples[0], -1.0).then(|| end(&samples[0], 0.0));
-    let finish = falls(&samples[last], 1.0).then(|| end(&samples[last], 1.0));
-    let inner = samples.windows(2).enumerate().filter_map(move |(i, pair)| {
+    let arches = samples.windows(2).enumerate().filter_map(move |(i, pair)| {
         let arch = arch_bound(&pair[0], &pair[1], order, width) > 0.0;
         arch.then(|| refine(joint, order, i as f64 * width, width, pair))
     });
-    inner.chain(start).chain(finish)
+    // Which way the magnitude goes at a sample.
+    let slope = move |s: &Sample| s[order] * s[order + 1];
+    let last = samples.len() - 1;
+    let tops = samples.iter().enumerate().filter(move |(i, s)| {
+        let falls_before =
+            *i == 0 || slope(s) >= 0.0 && s[order].abs() >= samples[i - 1][order].abs();
+        let falls_after =
+            *i == last || slope(s) <= 0.0 && s[order].abs() >= samples[i + 1][order].abs();
+        falls_before && falls_after
+    });
+    let tops = tops.map(move |(i, s)| Peak { value: s[order].abs(), tau: i as f64 * width });
+    arches.chain(tops)
 }
 
 /// What an arch between two samples can reach at most, or zero where the slope does not turn from up

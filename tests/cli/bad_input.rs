@@ -143,6 +143,17 @@ fn experiments() {
             "name = 'x'\n[[optimiser]]\nnelder-mead = { cost_tolerance = inf }\n".to_owned(),
         ),
         ("step_too_large", "name = 'x'\n[[optimiser]]\ncma-es = { step = 1.5 }\n".to_owned()),
+        (
+            "hybrid_of_scp",
+            "name = 'x'\n[[optimiser]]\nhybrid = { search = { scp = {} } }\n".to_owned(),
+        ),
+        (
+            "hybrid_of_another_formulation",
+            "name = 'x'\n[[optimiser]]\nhybrid = { search = { pso = { formulation = 'raw' } } }\n"
+                .to_owned(),
+        ),
+        ("hybrid_without_budget", "name = 'x'\n[[optimiser]]\nhybrid = { share = 0 }\n".to_owned()),
+        ("radius_of_nothing", "name = 'x'\n[[optimiser]]\nscp = { radius = 0 }\n".to_owned()),
         ("no_growth", "name = 'x'\n[[optimiser]]\ncma-es = { growth = 0 }\n".to_owned()),
         ("target_not_a_number", format!("name = 'x'\ntargets = [nan]{FIELD}")),
         ("targets_no_list", format!("name = 'x'\ntargets = 0.9{FIELD}")),

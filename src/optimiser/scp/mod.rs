@@ -1,0 +1,257 @@
+//! Sequential convex programming on the composite cost `J = a ‖r(x)‖ + b max_p h_p(x)`.
+//!
+//! Each step linearises the smooth parts and leaves the norm and the maximum as they are: a conic
+//! subproblem, solved by Clarabel, within a trust region (Fletcher 1982, doi:10.1007/BFb0120959), with
+//! a second-order correction (Fletcher 1982, doi:10.1007/BFb0093151). Since the duration is the longest
+//! that any limit asks for, every start is within the limits and stays there. The Lagrangian's second
+//! derivative within the space where the active parts stay level, with what is negative taken out so
+//! that the subproblem stays convex, makes the last steps few.
+//!
+//! The norm is an exact penalty: as soon as `a` exceeds the multiplier of `r = 0` the minimum no longer
+//! depends on it. The task's weight is many times that, which makes a search hug `r = 0`, slow and
+//! soon in a poor valley; so the search starts with a smaller one and raises it only as it must.
+//!
+//! A start has been followed to its end when, with the task's own weight, a step promises next to
+//! nothing and the Lagrangian is level, the first-order condition of a minimum.
+
+mod iterate;
+mod subproblem;
+
+use std::num::NonZeroUsize;
+
+use nalgebra::{DMatrix, DVector};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Optimiser;
+use crate::input::{count, optional_count, positive, share};
+use crate::oracle::{Oracle, Rng, Stop};
+use crate::problem::Bounds;
+use iterate::Iterate;
+use subproblem::{Model, Region, Step, Values};
+
+/// Settings of sequential convex programming.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default, expecting = "a table")]
+pub struct Scp {
+    /// starts, each followed to its local optimum; without it 100 random ones, or after another
+    /// optimiser the best point it found and no more
+    #[serde(deserialize_with = "optional_count::<1, 1_000_000_000, _, _>")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub starts: Option<NonZeroUsize>,
+    /// most steps from one start
+    #[serde(deserialize_with = "count::<1_000_000, _, _>")]
+    pub steps: NonZeroUsize,
+    /// first radius of the trust region, as a fraction of the box's half-width
+    #[serde(deserialize_with = "share")]
+    pub radius: f64,
+    /// first weight of the base's error, in costs of the start's duration; it grows to the task's own
+    #[serde(deserialize_with = "positive")]
+    pub first_weight: f64,
+    /// a start ends when a step promises to lower J by less than this share of it, provided that the
+    /// Lagrangian is level
+    #[serde(deserialize_with = "share")]
+    pub tolerance: f64,
+    /// the Lagrangian is level when over half the box's width it changes by less than this share of J
+    #[serde(deserialize_with = "share")]
+    pub stationarity: f64,
+}
+
+impl Default for Scp {
+    fn default() -> Self {
+        let steps = NonZeroUsize::MIN.saturating_add(199);
+        Self {
+            starts: None,
+            steps,
+            radius: 0.1,
+            first_weight: 4.0,
+            tolerance: 1e-9,
+            stationarity: 1e-5,
+        }
+    }
+}
+
+/// Why following one start came to an end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// A step promises next to nothing, and the Lagrangian is level.
+    Optimal,
+    /// The trust region shrank to nothing where the Lagrangian is not level.
+    Stalled,
+    /// Every step was made.
+    StepsSpent,
+}
+
+impl Optimiser for Scp {
+    fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
+        self.minimise_from(None, oracle, rng)
+    }
+
+    fn needs_derivatives(&self) -> bool {
+        true
+    }
+}
+
+impl Scp {
+    /// Minimises with `first` as the first start, where there is one.
+    pub(super) fn minimise_from(
+        &self,
+        first: Option<&[f64]>,
+        oracle: &mut Oracle<'_>,
+        rng: &mut Rng,
+    ) -> Result<(), Stop> {
+        let usual = if first.is_some() { 1 } else { 100 };
+        let starts = self.starts.map_or(usual, NonZeroUsize::get);
+        if let Some(first) = first {
+            self.follow(oracle, first)?;
+        }
+        for _ in usize::from(first.is_some())..starts {
+            self.follow(oracle, &Self::start(oracle.bounds(), rng))?;
+        }
+        Ok(())
+    }
+
+    /// Draws a start uniformly from the box shrunk about its middle, by the square of a number drawn
+    /// uniformly from the unit interval. Of twelve tasks with random poses nine were solved most often
+    /// from near the middle, three only or mostly from far out.
+    pub fn start(bounds: &Bounds, rng: &mut Rng) -> Vec<f64> {
+        let shrink = rng.unit().powi(2);
+        let draw = |[lower, upper]: [f64; 2]| {
+            let middle = f64::midpoint(lower, upper);
+            middle + shrink * (rng.uniform(lower, upper) - middle)
+        };
+        bounds.iter().map(draw).collect()
+    }
+
+    /// Follows one start to a local optimum.
+    pub fn follow(&self, oracle: &mut Oracle<'_>, start: &[f64]) -> Result<Ending, Stop> {
+        let mut search = Search::new(self, oracle, start)?;
+        for _ in 0..self.steps.get() {
+            if let Some(ending) = search.step()? {
+                return Ok(ending);
+            }
+        }
+        Ok(Ending::StepsSpent)
+    }
+}
+
+/// The trust region's smallest radius.
+const SMALLEST: f64 = 1e-9;
+
+/// Share of the promised gain that a step has to keep to be taken, not to narrow the region, and to
+/// widen it.
+const TAKE: f64 = 0.05;
+const NARROW: f64 = 0.3;
+const WIDEN: f64 = 0.7;
+
+/// By how much the weight of the norm grows at a time.
+const GROWTH: f64 = 10.0;
+
+/// Share of its largest value above which a multiplier counts.
+const ACTIVE: f64 = 1e-5;
+
+/// Share of the start's cost below which a cost is as good as none.
+const NOTHING: f64 = 1e-6;
+
+/// One start on its way.
+struct Search<'a, 'b> {
+    settings: &'a Scp,
+    oracle: &'a mut Oracle<'b>,
+    here: Iterate,
+    curvature: DMatrix<f64>,
+    radius: f64,
+    /// The task's own weight of the norm.
+    full_weight: f64,
+    start_cost: f64,
+}
+
+impl<'a, 'b> Search<'a, 'b> {
+    fn new(settings: &'a Scp, oracle: &'a mut Oracle<'b>, start: &[f64]) -> Result<Self, Stop> {
+        let here = Iterate::at(oracle, DVector::from_column_slice(start))?;
+        let (full_weight, start_cost) = (here.parts.norm_weight, here.cost());
+        let here = here.weighed(0.0);
+        let first_weight = settings.first_weight * here.cost();
+        // Where time costs nothing there is nothing to compare the error with.
+        let weight = if first_weight > 0.0 { first_weight.min(full_weight) } else { full_weight };
+        Ok(Self {
+            settings,
+            oracle,
+            here: here.weighed(weight),
+            curvature: DMatrix::zeros(start.len(), start.len()),
+            radius: settings.radius,
+            full_weight,
+            start_cost,
+        })
+    }
+
+    /// What shares of the cost are taken of.
+    fn scale(&self) -> f64 {
+        self.here.cost() + NOTHING * self.start_cost
+    }
+
+    /// Solves one subproblem and makes its step, or not.
+    fn step(&mut self) -> Result<Option<Ending>, Stop> {
+        if self.radius < SMALLEST {
+            return Ok(self.finish(Ending::Stalled, GROWTH));
+        }
+        let region = Region::around(self.oracle.bounds(), &self.here.x, self.radius);
+        let model = Model { parts: &self.here.parts, curvature: &self.curvature, region: &region };
+        let Some(step) = model.minimise(self.oracle, &Values::of(&self.here.parts))? else {
+            self.radius /= 4.0;
+            return Ok(None);
+        };
+        let promised = self.here.cost() - step.cost;
+        if promised <= self.settings.tolerance * self.scale() {
+            return self.settle(&step);
+        }
+        let (there, step) = self.here.advance(self.oracle, &model, step, TAKE * promised)?;
+        let kept = (self.here.cost() - there.cost()) / promised;
+        let reach = region.reach(&step.d);
+        if kept >= TAKE {
+            self.curvature = there.curvature(self.oracle, &self.here, &step)?;
+            self.here = there;
+        }
+        self.radius = match kept {
+            kept if kept >= WIDEN && reach > 0.9 => (2.0 * self.radius).min(1.0),
+            kept if kept >= NARROW => self.radius,
+            kept if kept >= TAKE => self.radius / 2.0,
+            // Also a cost that is no number.
+            _ => 0.35 * self.radius * reach.min(1.0),
+        };
+        Ok(None)
+    }
+
+    /// What to do where a step promises nothing.
+    fn settle(&mut self, step: &Step) -> Result<Option<Ending>, Stop> {
+        let slope = self.here.slope(self.oracle.bounds(), step);
+        if slope <= self.settings.stationarity * self.scale() {
+            // A shorter multiplier stays one whatever the weight.
+            let exact = step.nu.norm() < (1.0 - ACTIVE) * self.here.parts.norm_weight;
+            let growth = if exact { f64::INFINITY } else { GROWTH };
+            return Ok(self.finish(Ending::Optimal, growth));
+        }
+        // Where the cost no longer tells good steps from bad ones, the slope does.
+        let weight = self.here.parts.norm_weight;
+        let there = Iterate::at(self.oracle, &self.here.x + &step.d)?.weighed(weight);
+        if there.cost() <= self.here.cost() + self.settings.tolerance * self.scale() {
+            self.curvature = there.curvature(self.oracle, &self.here, step)?;
+            self.here = there;
+        } else if self.curvature.iter().any(|&b| b != 0.0) {
+            self.curvature.fill(0.0);
+        } else {
+            return Ok(self.finish(Ending::Stalled, GROWTH));
+        }
+        Ok(None)
+    }
+
+    /// Ends, unless with a smaller weight than the task's own: then goes on with a larger one.
+    fn finish(&mut self, ending: Ending, growth: f64) -> Option<Ending> {
+        let weight = self.here.parts.norm_weight;
+        if weight >= self.full_weight {
+            return Some(ending);
+        }
+        self.here.parts.norm_weight = self.full_weight.min(growth * weight);
+        self.radius = self.radius.max(self.settings.radius);
+        None
+    }
+}
