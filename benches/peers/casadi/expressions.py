@@ -6,6 +6,19 @@ import numpy as np
 STEPS = 24
 """Magnus steps of sixth order, as many as `scp` makes."""
 
+NODES = np.add.outer(np.arange(STEPS), 0.5 + np.sqrt(15) / 10 * np.arange(-1, 2)).ravel() / STEPS
+"""Times of the three Gauss nodes of every step."""
+
+GRID = (100, 20, 40)
+"""Intervals of the equal grids on which rates, accelerations and jerks are limited."""
+
+
+def limit_times(order):
+    """The times at which the derivative of this order is limited."""
+    times = np.linspace(0, 1, GRID[order - 1] + 1)
+    # At both ends rate and acceleration are zero whatever the coefficients.
+    return times if order == 3 else times[1:-1]
+
 
 def base_rate(task):
     """Function of `y = (angles, rates)`: the base's angular rate at zero momentum (eqs. 5–7)."""

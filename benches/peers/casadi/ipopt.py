@@ -1,29 +1,19 @@
-"""The time-free task as a nonlinear program, in CasADi expressions, solved by IPOPT.
+"""The time-free task as a nonlinear program, solved by IPOPT.
 
     minimise    K_t t_f                                     over the bump coefficients c and t_f
     subject to  δq_b(c) = 0                                 the base ends at its goal: three rows
                 |θ'|, |θ''|, |θ'''| ≤ limit · t_f^order     of every joint, on grids of times
                 |c| ≤ box
 
-The derivatives of the pieces are CasADi's. The chain rule that puts them together is written out here,
-so that nothing is computed that is known to vanish. All is generated as C and compiled before any
-clock runs.
+`derived.py` and `plain.py` write it down, with derivatives put together by hand and without.
 """
 
-import hashlib
-import subprocess
 import time
 
 import casadi as ca
 import numpy as np
 
-from expressions import STEPS, limit, node, step
-from model import basis, evaluate
-
-GRID = (100, 20, 40)
-"""Intervals of the equal grids on which rates, accelerations and jerks are limited."""
-
-COMPILER = ["gcc", "-O3", "-march=native", "-shared", "-fPIC"]
+from model import evaluate
 
 OPTIONS = {
     "ipopt.print_level": 0,
@@ -40,159 +30,13 @@ OPTIONS = {
 }
 
 
-class Attitude:
-    """The base's error `δq_b` with its Jacobian, and the Hessian of `λ` times it."""
-
-    def __init__(self, task):
-        offset = np.sqrt(15) / 10
-        nodes = np.add.outer(np.arange(STEPS), [0.5 - offset, 0.5, 0.5 + offset]).ravel() / STEPS
-        bumps, sigma = basis(task.terms, nodes)
-        self.places = np.vstack([bumps[0], bumps[1], sigma[:2]])
-        self.variables = len(task.links) * task.terms
-        self.start = task.start_base
-        self.node, self.node2 = node(task)
-        self.step, self.step2 = step(self.variables)
-
-    def first(self, c):
-        """Error and Jacobian; the states before every step, and what each takes in."""
-        n = self.variables
-        rates, slopes = self.node.map(3 * STEPS)(ca.repmat(c, 1, 3 * STEPS), self.places)
-        rates = ca.horzsplit(ca.reshape(rates, 9, STEPS))
-        slopes = [ca.vertcat(*ca.horzsplit(block, n)) for block in ca.horzsplit(slopes, 3 * n)]
-        states = [(ca.MX(self.start), ca.MX.zeros(4, n))]
-        for w, j in zip(rates, slopes):
-            states.append(self.step(*states[-1], w, j))
-        attitude, along = states[-1]
-        return attitude[1:], along[1:, :], states, list(zip(rates, slopes))
-
-    def second(self, c, multiplier):
-        """The Hessian."""
-        *_, states, steps = self.first(c)
-        a = ca.vertcat(0, multiplier)
-        total, multipliers = 0, []
-        for (q, d), (w, j) in zip(reversed(states[:-1]), reversed(steps)):
-            mu, hessian, a = self.step2(q, d, a, w, j)
-            total += hessian
-            multipliers.insert(0, ca.reshape(mu, 3, 3))
-        nodes = self.node2.map(3 * STEPS)
-        own = nodes(ca.repmat(c, 1, 3 * STEPS), self.places, ca.horzcat(*multipliers))
-        n = self.variables
-        return total + ca.reshape(ca.sum2(ca.reshape(own, n * n, 3 * STEPS)), n, n)
-
-
-class Limits:
-    """Rates, accelerations and jerks of one joint as shares of their limits: values, derivatives by
-    its coefficients and `t_f`, and the Hessian of `λ` times them."""
-
-    def __init__(self, task, joint):
-        self.parts = []
-        for order, intervals in zip((1, 2, 3), GRID):
-            times = np.linspace(0, 1, intervals + 1)
-            # At both ends rate and acceleration are zero whatever the coefficients.
-            bumps, sigma = basis(task.terms, times if order == 3 else times[1:-1])
-            places = np.vstack([np.vstack([bumps[k], sigma[k]]) for k in range(order + 1)])
-            self.parts.append((*limit(task, joint, order), places))
-        self.rows = sum(places.shape[1] for *_, places in self.parts)
-
-    def first(self, z):
-        """Shares (rows) and their gradients, one column a row."""
-        found = [
-            first.map(places.shape[1])(ca.repmat(z, 1, places.shape[1]), places)
-            for first, _, places in self.parts
-        ]
-        return ca.horzcat(*(f[0] for f in found)).T, ca.horzcat(*(f[1] for f in found))
-
-    def second(self, z, multipliers):
-        """The Hessian."""
-        n, total, begin = z.numel(), 0, 0
-        for _, second, places in self.parts:
-            count = places.shape[1]
-            part = multipliers[begin : begin + count].T
-            all_rows = second.map(count)(ca.repmat(z, 1, count), places, part)
-            total += ca.reshape(ca.sum2(ca.reshape(all_rows, n * n, count)), n, n)
-            begin += count
-        return total
-
-
-def program(task):
-    """The program as CasADi's interface to IPOPT wants it: cost and rows, the cost's gradient, the
-    rows' Jacobian, the Lagrangian's Hessian."""
-    joints, terms = len(task.links), task.terms
-    x, weight, none = ca.MX.sym("x", joints * terms + 1), ca.MX.sym("w"), ca.MX.sym("p", 0)
-    c, duration = x[:-1], x[-1]
-    attitude, limits = Attitude(task), [Limits(task, joint) for joint in range(joints)]
-    own = [ca.vertcat(part, duration) for part in ca.vertsplit(c, terms)]
-    error, along, *_ = attitude.first(c)
-    shares, slopes = zip(*(limits_of.first(z) for limits_of, z in zip(limits, own)))
-    cost, rows = task.time_weight * duration, ca.vertcat(error, *shares)
-    multipliers = ca.MX.sym("l", rows.numel())
-    bend = hessian(attitude.second(c, multipliers[:3]), limits, own, multipliers[3:])
-    return [
-        ca.Function("nlp", [x, none], [cost, rows], ["x", "p"], ["f", "g"]),
-        ca.Function("nlp_grad_f", [x, none], [cost, ca.gradient(cost, x)]),
-        ca.Function("nlp_jac_g", [x, none], [rows, jacobian(along, slopes, terms)]),
-        ca.Function("nlp_hess_l", [x, none, weight, multipliers], [bend]),
-    ]
-
-
-def jacobian(along, slopes, terms):
-    """The rows' sparse Jacobian: each limit has its own joint's coefficients and `t_f`."""
-    values, row, column, begin = [], [], [], 3
-    for joint, slope in enumerate(slopes):
-        count = slope.shape[1]
-        for k in range(terms):
-            values += [along[:, joint * terms + k], slope[k, :].T]
-            row += [0, 1, 2, *range(begin, begin + count)]
-            column += [joint * terms + k] * (3 + count)
-        begin += count
-    values += [slope[terms, :].T for slope in slopes]
-    row += range(3, begin)
-    column += [len(slopes) * terms] * (begin - 3)
-    pattern = ca.Sparsity.triplet(begin, len(slopes) * terms + 1, row, column)
-    return ca.MX(pattern, ca.vertcat(*values))
-
-
-def hessian(attitude, limits, own, multipliers):
-    """The Lagrangian's Hessian, upper triangle."""
-    n, begin = attitude.shape[0] + 1, 0
-    total = ca.densify(ca.diagcat(attitude, 0))
-    for joint, (limits_of, z) in enumerate(zip(limits, own)):
-        terms = z.numel() - 1
-        select = ca.DM.eye(n)[:, [*range(joint * terms, (joint + 1) * terms), n - 1]]
-        part = limits_of.second(z, multipliers[begin : begin + limits_of.rows])
-        total += select @ part @ select.T
-        begin += limits_of.rows
-    return ca.triu(total)
-
-
-def compiled(functions, folder):
-    """The functions as generated C, compiled; what was compiled before is taken as it is."""
-    generator = ca.CodeGenerator("program.c")
-    for function in functions:
-        generator.add(function)
-    source = generator.dump()
-    name = hashlib.sha256((source + " ".join(COMPILER)).encode()).hexdigest()[:16]
-    folder.mkdir(parents=True, exist_ok=True)
-    library = folder / f"{name}.so"
-    if not library.exists():
-        (folder / f"{name}.c").write_text(source)
-        subprocess.run([*COMPILER, folder / f"{name}.c", "-o", library], check=True)
-    return [ca.external(function.name(), str(library)) for function in functions]
-
-
 class Solver:
-    """IPOPT, with the program built and compiled into a folder."""
+    """IPOPT with the program in one of its forms, built."""
 
-    def __init__(self, task, folder, options=OPTIONS):
+    def __init__(self, task, program, derivatives, options=OPTIONS):
         self.task, self.shape = task, (len(task.links), task.terms)
-        nlp, grad_f, jac_g, hess_lag = compiled(program(task), folder)
-        x = ca.MX.sym("x", self.shape[0] * self.shape[1] + 1)
-        cost, rows = nlp(x, [])
-        custom = {"grad_f": grad_f, "jac_g": jac_g, "hess_lag": hess_lag}
-        self.ipopt = ca.nlpsol(
-            "solver", "ipopt", {"x": x, "f": cost, "g": rows}, {**custom, **options}
-        )
-        box, limits = np.tile(task.box, self.shape[0]), np.ones(rows.numel() - 3)
+        self.ipopt = ca.nlpsol("solver", "ipopt", program, {**derivatives, **options})
+        box, limits = np.tile(task.box, self.shape[0]), np.ones(program["g"].numel() - 3)
         self.bounds = {
             "lbx": np.append(-box, 0.1),
             "ubx": np.append(box, 1000),
@@ -205,9 +49,9 @@ class Solver:
         does. What is found is evaluated densely, at the shortest duration within the limits."""
         duration = evaluate(self.task, np.reshape(start, self.shape), steps=1).shortest
         guess = np.append(start, duration)
-        clock = time.perf_counter()
+        clock, busy = time.perf_counter(), time.process_time()
         solution = self.ipopt(x0=guess, **self.bounds)
-        seconds = time.perf_counter() - clock
+        seconds, busy = time.perf_counter() - clock, time.process_time() - busy
         x, stats = solution["x"].full().ravel(), self.ipopt.stats()
         motion = evaluate(self.task, x[:-1].reshape(self.shape))
         return {
@@ -219,6 +63,7 @@ class Solver:
             "excess": motion.shortest / x[-1] - 1,
             "multiplier": float(ca.norm_2(solution["lam_g"][:3])),
             "seconds": seconds,
+            "processor_seconds": busy,
             "ending": stats["return_status"],
             "iterations": stats["iter_count"],
         }
