@@ -18,9 +18,10 @@ lint:
 bench:
     cargo bench
 
-# scp beside CasADi and IPOPT; needs Python 3.11
+# scp beside CasADi and IPOPT, the other optimisers beside theirs; needs Python 3.11
 peers:
     benches/peers/casadi/run.sh
+    benches/peers/optimisers/run.sh
 
 # the default experiment
 run:

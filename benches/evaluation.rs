@@ -7,8 +7,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use driftless::attitude::net_rotation;
 use driftless::momentum::base_twist;
 use driftless::oracle::Rng;
-use driftless::problem::{Formulated, Formulation, Problem, TaskFile};
+use driftless::problem::{Composite, Formulated, Formulation, Multipliers, Problem, TaskFile};
 use driftless::trajectory::Peaks;
+use nalgebra::DVector;
 
 fn evaluation(c: &mut Criterion) {
     let document = TaskFile::paper();
@@ -44,6 +45,18 @@ fn evaluation(c: &mut Criterion) {
     });
     group.bench_function("attitude", |b| {
         b.iter(|| net_rotation(&robot, black_box(&path), accuracy.attitude_steps));
+    });
+    let time_free = Formulated::new(Formulation::TimeFree, problem.clone(), &boxes);
+    let parts = time_free.linearise(&coefficients);
+    let multipliers = Multipliers {
+        residual: DVector::from_element(3, 1.0),
+        pieces: parts.pieces.iter().take(8).map(|piece| (piece.place, 0.1)).collect(),
+    };
+    group.bench_function("linearisation", |b| {
+        b.iter(|| time_free.linearise(black_box(&coefficients)));
+    });
+    group.bench_function("curvature", |b| {
+        b.iter(|| time_free.curvature(black_box(&coefficients), &multipliers));
     });
     group.bench_function("peaks", |b| {
         b.iter(|| Peaks::of(black_box(&path), accuracy.peak_intervals));

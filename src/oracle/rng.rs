@@ -1,4 +1,5 @@
-//! Random numbers that are the same on every machine for the same seed.
+//! Random numbers, the same for the same seed; uniform ones and indices to the last bit on every
+//! machine, normal and Cauchy ones as far as its mathematics library agrees.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng};

@@ -35,7 +35,7 @@ pub trait Problem: Sync {
         }
     }
 
-    /// The same problem with first derivatives, where it has them.
+    /// The same problem with derivatives, where it has them.
     fn composite(&self) -> Option<&dyn Composite> {
         None
     }

@@ -29,7 +29,7 @@ COLUMNS = {
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("ours", type=Path, help="the example `peer_ours`, built")
+    parser.add_argument("ours", type=Path, help="the example `starts`, built")
     parser.add_argument("folder", type=Path, help="where compiled code and results go")
     parser.add_argument("starts", type=int, nargs="?", default=100)
     arguments = parser.parse_args()

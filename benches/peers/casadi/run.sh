@@ -9,6 +9,6 @@ folder=$target/peers/casadi
 python=$folder/venv/bin/python
 [ -x "$python" ] || python3 -m venv "$folder/venv"
 "$python" -m pip install --quiet --disable-pip-version-check -r "$here/requirements.txt"
-cargo build --release --locked --no-default-features --example peer_ours
+cargo build --release --locked --no-default-features --example starts
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE=1
-taskset -c "${CPU:-1}" "$python" "$here/compare.py" "$target/release/examples/peer_ours" "$folder" "${1:-100}"
+taskset -c "${CPU:-1}" "$python" "$here/compare.py" "$target/release/examples/starts" "$folder" "${1:-100}"
