@@ -153,12 +153,15 @@ pub fn fingerprint(problem: &Reorientation) -> String {
     }
     let Task { robot, start, goal, limits, base_weight } = &**problem.task();
     let turn = start.base.inverse() * goal.base;
+    let mut components = [turn.w, turn.i, turn.j, turn.k].into_iter();
+    let first = components.find(|component| component.abs() >= ZERO).unwrap_or_default();
     let determinants = Determinants {
         robot,
         start: &start.joints,
         goal: &goal.joints,
-        // Of the two quaternions for one turn, the one with a positive real part.
-        turn: if turn.w < 0.0 { UnitQuaternion::new_unchecked(-turn.into_inner()) } else { turn },
+        // Of the two quaternions for one turn, the one whose first component, the real part before the
+        // others, is positive.
+        turn: if first < 0.0 { UnitQuaternion::new_unchecked(-turn.into_inner()) } else { turn },
         limits,
         base_weight: *base_weight,
         terms: problem.family().terms(),
