@@ -36,10 +36,10 @@
 //! | 12 | [`cli`]: one file a verb |
 //! | 10 | `plot`: charts; [`export`]: motions in formats that other tools read |
 //! | 9 | `analysis`: from stored runs to tables |
-//! | 8 | `experiment`: config, plan, runner, store |
+//! | 8 | `experiment`: config, instances, plan, runner, store |
 //! | 7 | [`optimiser`]: one file an optimiser |
 //! | 6 | [`oracle`]: budget, counters, best so far, trace |
-//! | 5 | [`problem`]: the reorientation task in its formulations |
+//! | 5 | [`problem`]: the reorientation task in its formulations, the best motions known, test functions |
 //! | 4 | [`task`], [`attitude`] |
 //! | 3 | [`momentum`], [`trajectory`] |
 //! | 2 | [`kinematics`] |

@@ -2,12 +2,12 @@
 
 use nalgebra::SimdRealField;
 
-/// A real number, a vector of lanes of real numbers, or a number that carries its derivative.
+/// A real number, or a vector of lanes of real numbers.
 ///
 /// Kinematics, momentum and attitude are written once over this bound. `f64` evaluates one motion,
 /// a SIMD type such as [`simba::simd::WideF64x4`] evaluates one motion a lane.
 pub trait Scalar: SimdRealField<Element: SimdRealField> + Copy {
-    /// The constant `value`, the same in every lane and with zero derivative.
+    /// The constant `value`, the same in every lane.
     #[inline]
     fn of(value: f64) -> Self {
         nalgebra::convert(value)

@@ -22,8 +22,8 @@ use crate::trajectory::Path;
 /// `√15`, in the sixth-order step and its three Gauss–Legendre nodes.
 const SQRT_15: f64 = 3.872_983_346_207_417;
 
-/// How far the outer nodes lie from the middle of a step, in its widths.
-const OFFSET: f64 = SQRT_15 / 10.0;
+/// Where the nodes lie in a step, in its widths.
+const NODES: [f64; 3] = [0.5 - SQRT_15 / 10.0, 0.5, 0.5 + SQRT_15 / 10.0];
 
 /// The rotations of `steps` equal steps of the path, in order; their product turns the attitude at
 /// the start into the attitude at the end.
@@ -44,7 +44,7 @@ pub fn increments<'a, T: Scalar>(
             path.angles_and_rates((i as f64 + node) * width, &mut angles, &mut rates);
             base_twist(robot, &angles, &rates).angular * T::of(width)
         };
-        so3::exp(&magnus([0.5 - OFFSET, 0.5, 0.5 + OFFSET].map(&mut step_rate)))
+        so3::exp(&magnus(NODES.map(&mut step_rate)))
     })
 }
 

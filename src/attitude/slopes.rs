@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Matrix3xX, UnitQuaternion, Vector3};
 
 use super::node::Node;
-use super::{OFFSET, SQRT_15, magnus};
+use super::{NODES, SQRT_15, magnus};
 use crate::robot::Robot;
 use crate::so3;
 use crate::trajectory::Path;
@@ -26,9 +26,8 @@ pub fn net_rotation_slopes(robot: &Robot, path: &Path<'_, f64>, steps: usize) ->
     let mut rotation = UnitQuaternion::identity();
     let mut by_coefficient = Matrix3xX::zeros(path.dimension());
     let mut nodes = std::array::from_fn(|_| Node::new(robot));
-    let places = [0.5 - OFFSET, 0.5, 0.5 + OFFSET];
     for step in (0..steps).rev() {
-        let times = places.map(|place| (step as f64 + place) * width);
+        let times = NODES.map(|node| (step as f64 + node) * width);
         for (node, tau) in nodes.iter_mut().zip(times) {
             node.evaluate(robot, path, tau);
         }

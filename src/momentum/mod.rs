@@ -26,21 +26,39 @@ pub struct Twist<T> {
 /// One outward sweep with the base held still gives the arm's momentum and the composite inertia;
 /// about the system's centre of mass the angular part then stands alone, a 3×3 solve.
 pub fn base_twist<T: Scalar>(robot: &Robot, angles: &[T], rates: &[T]) -> Twist<T> {
+    let (balance, momentum) = sweep(robot, angles, rates, |_| {});
+    balance.twist(&momentum)
+}
+
+/// One link with the base held still.
+#[derive(Debug, Clone)]
+struct Link<T> {
+    /// The twist for unit rate of its joint.
+    screw: Twist<T>,
+    twist: Twist<T>,
+    body: RigidBody<T>,
+}
+
+/// The outward sweep with the base held still: the whole system and the arm's momentum; `each` is told
+/// every link.
+fn sweep<T: Scalar>(
+    robot: &Robot,
+    angles: &[T],
+    rates: &[T],
+    mut each: impl FnMut(Link<T>),
+) -> (Balance<T>, Momentum<T>) {
     let mut system = RigidBody::base(robot);
     let mut momentum = Momentum::zero();
     let mut twist = Twist::zero();
     for (link, &rate) in Outward::new(robot, angles).zip(rates) {
-        twist += screw(&link) * rate;
+        let screw = Twist { linear: link.proximal.position.cross(&link.axis), angular: link.axis };
+        twist += screw * rate;
         let body = RigidBody::link(&link);
         momentum += body.momentum(&twist);
         system += body;
+        each(Link { screw, twist, body });
     }
-    system.balance().twist(&momentum)
-}
-
-/// The twist for unit rate of the joint that moves the link, the base held still.
-fn screw<T: Scalar>(link: &LinkPose<'_, T>) -> Twist<T> {
-    Twist { linear: link.proximal.position.cross(&link.axis), angular: link.axis }
+    (system.balance(), momentum)
 }
 
 impl<T: Scalar> Twist<T> {

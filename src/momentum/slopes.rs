@@ -2,8 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Momentum, RigidBody, Twist, screw};
-use crate::kinematics::Outward;
+use super::{Link, Momentum, RigidBody, sweep};
 use crate::robot::Robot;
 use crate::scalar::Scalar;
 
@@ -24,14 +23,6 @@ pub struct RateSlopes<T> {
     links: Vec<Link<T>>,
 }
 
-#[derive(Debug, Clone)]
-struct Link<T> {
-    screw: Twist<T>,
-    /// The base held still.
-    twist: Twist<T>,
-    body: RigidBody<T>,
-}
-
 impl<T: Scalar> RateSlopes<T> {
     /// Room for the derivatives of one robot.
     pub fn new(robot: &Robot) -> Self {
@@ -46,19 +37,8 @@ impl<T: Scalar> RateSlopes<T> {
 
     /// Evaluates at joint angles \[rad\] and rates \[rad/s\] with zero total momentum.
     pub fn evaluate(&mut self, robot: &Robot, angles: &[T], rates: &[T]) {
-        let mut system = RigidBody::base(robot);
-        let mut momentum = Momentum::zero();
-        let mut twist = Twist::zero();
         self.links.clear();
-        for (link, &rate) in Outward::new(robot, angles).zip(rates) {
-            let screw = screw(&link);
-            twist += screw * rate;
-            let body = RigidBody::link(&link);
-            momentum += body.momentum(&twist);
-            system += body;
-            self.links.push(Link { screw, twist, body });
-        }
-        let balance = system.balance();
+        let (balance, momentum) = sweep(robot, angles, rates, |link| self.links.push(link));
         let base = balance.twist(&momentum);
         self.angular = base.angular;
 

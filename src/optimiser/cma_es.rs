@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use super::distribution::{Constants, Distribution};
 use super::population::Population;
-use super::{Optimiser, reflect, scale_from_unit};
+use super::{Optimiser, mirror_from_unit};
 use crate::input::{count, non_negative, optional_count, share};
 use crate::oracle::{Oracle, Rng, Stop};
 use crate::problem::{Formulation, Points};
@@ -85,8 +85,8 @@ impl CmaEs {
             let steps: Vec<_> = (0..count).map(|_| distribution.step_within(rng)).collect();
             let mut points = Points::zeros(n, count);
             for (x, y) in points.iter_mut().zip(&steps) {
-                let reflected = (&distribution.mean + distribution.sigma * y).map(reflect);
-                scale_from_unit(oracle, reflected.as_slice(), x);
+                let z = &distribution.mean + distribution.sigma * y;
+                mirror_from_unit(oracle, z.as_slice(), x);
             }
             let generation = Population::evaluate(points, oracle)?;
             let ranking = generation.ranking();
@@ -125,18 +125,5 @@ impl Recent {
         let highest = self.best.iter().copied().fold(worst, f64::max);
         let lowest = self.best.iter().copied().fold(best, f64::min);
         highest - lowest <= tolerance
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn walls_reflect() {
-        for (z, expected) in [(0.25, 0.25), (-0.25, 0.25), (1.25, 0.75), (2.5, 0.5), (-3.75, 0.25)]
-        {
-            assert_eq!(reflect(z), expected);
-        }
     }
 }

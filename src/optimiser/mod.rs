@@ -55,10 +55,11 @@ fn uniform_point(oracle: &Oracle<'_>, rng: &mut Rng, x: &mut [f64]) {
     }
 }
 
-/// Writes the point of the oracle's box that stands at `z` in the unit box.
-fn scale_from_unit(oracle: &Oracle<'_>, z: &[f64], x: &mut [f64]) {
+/// Writes the point of the oracle's box that stands at `z` in the unit cube; the walls mirror what is
+/// outside.
+fn mirror_from_unit(oracle: &Oracle<'_>, z: &[f64], x: &mut [f64]) {
     for ((x, z), [lower, upper]) in x.iter_mut().zip(z).zip(oracle.bounds().iter()) {
-        *x = (lower + z * (upper - lower)).clamp(lower, upper);
+        *x = (lower + reflect(*z) * (upper - lower)).clamp(lower, upper);
     }
 }
 
@@ -66,4 +67,17 @@ fn scale_from_unit(oracle: &Oracle<'_>, z: &[f64], x: &mut [f64]) {
 fn reflect(z: f64) -> f64 {
     let z = z.rem_euclid(2.0);
     if z > 1.0 { 2.0 - z } else { z }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn walls_reflect() {
+        for (z, expected) in [(0.25, 0.25), (-0.25, 0.25), (1.25, 0.75), (2.5, 0.5), (-3.75, 0.25)]
+        {
+            assert_eq!(reflect(z), expected);
+        }
+    }
 }

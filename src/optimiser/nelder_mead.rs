@@ -12,7 +12,7 @@ use argmin::core::{CostFunction, Error, IterState, Problem, Solver as _, State a
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Optimiser, rank, reflect, scale_from_unit};
+use super::{Optimiser, mirror_from_unit, rank};
 use crate::input::{count, positive, share};
 use crate::oracle::{Oracle, Rng, Stop};
 use crate::problem::Formulation;
@@ -106,9 +106,8 @@ impl CostFunction for &UnitCube<'_, '_> {
 
     fn cost(&self, z: &Vec<f64>) -> Result<f64, Error> {
         let mut oracle = self.oracle.borrow_mut();
-        let inside: Vec<f64> = z.iter().copied().map(reflect).collect();
-        let mut x = inside.clone();
-        scale_from_unit(&oracle, &inside, &mut x);
+        let mut x = z.clone();
+        mirror_from_unit(&oracle, z, &mut x);
         // argmin gives up where it gets an error while it sets out.
         Ok(oracle.evaluate(&x).map_or_else(
             |stop| {

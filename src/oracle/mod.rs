@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use nalgebra::DMatrix;
 
-use crate::problem::{Bounds, Evaluation, Linearisation, Multipliers, Points, Problem};
+use crate::problem::{Bounds, Composite, Evaluation, Linearisation, Multipliers, Points, Problem};
 pub use rng::Rng;
 
 /// Why an optimiser has to stop.
@@ -161,9 +161,8 @@ impl<'a> Oracle<'a> {
     pub fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, Stop> {
         self.check()?;
         self.begin();
-        let clock = Instant::now();
-        let evaluation = self.problem.evaluate(x);
-        self.in_problem += clock.elapsed();
+        let problem = self.problem;
+        let evaluation = self.timed(|| problem.evaluate(x));
         self.record(x, evaluation);
         Ok(evaluation)
     }
@@ -196,13 +195,10 @@ impl<'a> Oracle<'a> {
 
     /// Evaluates one point together with its first derivatives: one evaluation and one linearisation.
     pub fn linearise(&mut self, x: &[f64]) -> Result<Linearisation, Stop> {
-        self.check()?;
-        let composite = self.problem.composite().ok_or(Stop::NoDerivatives)?;
+        let composite = self.composite()?;
         self.begin();
         self.linearisations += 1;
-        let clock = Instant::now();
-        let linearisation = composite.linearise(x);
-        self.in_problem += clock.elapsed();
+        let linearisation = self.timed(|| composite.linearise(x));
         self.record(x, Evaluation { cost: linearisation.cost(), violation: 0.0 });
         Ok(linearisation)
     }
@@ -213,13 +209,9 @@ impl<'a> Oracle<'a> {
         x: &[f64],
         multipliers: &Multipliers,
     ) -> Result<DMatrix<f64>, Stop> {
-        self.check()?;
-        let composite = self.problem.composite().ok_or(Stop::NoDerivatives)?;
+        let composite = self.composite()?;
         self.curvatures += 1;
-        let clock = Instant::now();
-        let curvature = composite.curvature(x, multipliers);
-        self.in_problem += clock.elapsed();
-        Ok(curvature)
+        Ok(self.timed(|| composite.curvature(x, multipliers)))
     }
 
     /// Counts the conic subproblem that `solve` solves, or fails to.
@@ -271,6 +263,19 @@ impl<'a> Oracle<'a> {
         } else {
             Ok(())
         }
+    }
+
+    fn composite(&self) -> Result<&'a dyn Composite, Stop> {
+        self.check()?;
+        self.problem.composite().ok_or(Stop::NoDerivatives)
+    }
+
+    /// Does work that is the problem's, on its clock.
+    fn timed<R>(&mut self, work: impl FnOnce() -> R) -> R {
+        let clock = Instant::now();
+        let result = work();
+        self.in_problem += clock.elapsed();
+        result
     }
 
     /// Counts an evaluation that is about to be made: it may panic and never be recorded.

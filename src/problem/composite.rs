@@ -4,7 +4,6 @@ use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 
 use super::{Formulated, Problem, Reorientation};
 use crate::attitude::{net_rotation, net_rotation_curvature, net_rotation_slopes};
-use crate::task::Task;
 use crate::trajectory::{LocalPeak, Path, Peaks, duration_asked};
 
 /// A cost that is convex in smooth parts: `J(x) = a ‖r(x)‖ + b max_p h_p(x)`.
@@ -92,20 +91,24 @@ impl Reorientation {
 
     /// The base's error, and how its vector part follows a turn of the base's end in base axes.
     fn turned_error(&self, net: UnitQuaternion<f64>) -> (UnitQuaternion<f64>, Matrix3<f64>) {
-        let Task { start, goal, .. } = &**self.task();
-        let error = goal.base.inverse() * start.base * net;
+        let error = self.error_after(net);
         // q ⊗ (0, ½ v) has the vector part ½ (q_w v + q_v × v).
         let by_turn = (Matrix3::from_diagonal_element(error.w) + error.imag().cross_matrix()) / 2.0;
         (error, by_turn)
+    }
+
+    /// The duration \[s\] that a derivative of this value asks for at this place.
+    fn duration_for(&self, place: &LocalPeak, derivative: f64) -> f64 {
+        let limit = self.task().limits.0[place.joint][place.order - 1];
+        duration_asked(derivative.abs() / limit, place.order)
     }
 
     /// The duration that one limit asks for at one place of the path, and its derivatives.
     fn piece(&self, path: &Path<'_, f64>, place: LocalPeak) -> Piece {
         let LocalPeak { joint: index, order, tau } = place;
         let joint = path.joint(index);
-        let limit = self.task().limits.0[index][order - 1];
         let derivative = joint.derivatives::<4>(tau)[order];
-        let value = duration_asked(derivative.abs() / limit, order);
+        let value = self.duration_for(&place, derivative);
         let by_derivative = value / (order as f64 * derivative);
         let terms = path.basis().terms();
         let mut gradient = DVector::zeros(self.family().dimension());
@@ -152,15 +155,14 @@ impl Reorientation {
     fn piece_curvature(&self, path: &Path<'_, f64>, place: &LocalPeak) -> DMatrix<f64> {
         let LocalPeak { joint: index, order, tau } = *place;
         let joint = path.joint(index);
-        let limit = self.task().limits.0[index][order - 1];
         let derivatives = joint.derivatives::<6>(tau);
         let v = derivatives[order];
-        let duration = duration_asked(v.abs() / limit, order);
+        let duration = self.duration_for(place, v);
         let slopes = |order| {
             DVector::from_iterator(path.basis().terms(), joint.coefficient_slopes(order, tau))
         };
         let (slope, drift) = (slopes(order), slopes(order + 1));
-        let bend = |k, l| joint.coefficient_curvature(order, tau, [k, l]);
+        let bend = joint.coefficient_curvature(order, tau);
         let mut second = DMatrix::from_fn(slope.len(), slope.len(), bend);
         if tau > 0.0 && tau < 1.0 {
             // The peak moves along the path.

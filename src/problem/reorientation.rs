@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use serde::Serialize;
 
 use crate::attitude::net_rotation;
-use crate::scalar::Scalar;
 use crate::task::Task;
 use crate::trajectory::{Family, Path, Peaks};
 
@@ -108,12 +107,14 @@ impl Reorientation {
     }
 
     /// `δq_b` of eq. 20 at the end of a path.
-    pub(super) fn base_error<T: Scalar>(&self, path: &Path<'_, T>) -> Vector3<T> {
-        let Task { robot, start, goal, .. } = &*self.task;
-        let relative = (goal.base.inverse() * start.base).into_inner();
-        let relative = Quaternion::from(relative.coords.map(T::of));
-        let net = net_rotation(robot, path, self.accuracy.attitude_steps);
-        (relative * net.into_inner()).imag()
+    fn base_error(&self, path: &Path<'_, f64>) -> Vector3<f64> {
+        let net = net_rotation(&self.task.robot, path, self.accuracy.attitude_steps);
+        self.error_after(net).imag()
+    }
+
+    /// The rotation from the goal to where the base ends after it has turned so.
+    pub(super) fn error_after(&self, net: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+        self.task.goal.base.inverse() * self.task.start.base * net
     }
 
     /// What `‖δq_b‖` and `t_f` weigh in `J` where no limit is exceeded.

@@ -134,12 +134,17 @@ impl<T: Scalar> JointPath<'_, T> {
         bumps.map(move |bump| amplitude * leibniz(order, &cos, &bump.map(T::of)))
     }
 
-    /// Second derivative of the `order`-th derivative of the angle by two of the joint's coefficients.
-    pub fn coefficient_curvature(&self, order: usize, tau: f64, [k, l]: [usize; 2]) -> T {
+    /// Second derivative of the `order`-th derivative of the angle by any two of the joint's
+    /// coefficients.
+    pub fn coefficient_curvature(&self, order: usize, tau: f64) -> impl Fn(usize, usize) -> T {
         let (sin, _) = self.sine::<ORDERS>(tau);
-        let [k, l] = [k, l].map(|k| self.basis.bump::<ORDERS>(k, tau));
-        let product: [T; ORDERS] = std::array::from_fn(|n| T::of(leibniz(n, &k, &l)));
-        -T::of(self.span.amplitude) * leibniz(order, &sin, &product)
+        let bumps: Vec<_> = self.basis.bumps::<ORDERS>(tau).collect();
+        let amplitude = T::of(self.span.amplitude);
+        move |k, l| {
+            let product: [T; ORDERS] =
+                std::array::from_fn(|n| T::of(leibniz(n, &bumps[k], &bumps[l])));
+            -amplitude * leibniz(order, &sin, &product)
+        }
     }
 
     /// Sine and cosine of the phase and their first derivatives by `τ`.

@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::path::{JointPath, Path};
-use crate::scalar::Scalar;
 
 /// Largest `|θ'|`, `|θ''|`, `|θ'''|` of each joint over the whole path.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,11 +125,11 @@ fn sample(joint: &JointPath<'_, f64>, intervals: usize, samples: &mut Vec<Sample
 
 /// The shortest duration \[s\] for a derivative that in one second is `ratio` times its limit:
 /// `ratio^(1/order)`.
-pub fn duration_asked<T: Scalar>(ratio: T, order: usize) -> T {
+pub fn duration_asked(ratio: f64, order: usize) -> f64 {
     match order {
         1 => ratio,
-        2 => ratio.simd_sqrt(),
-        _ => ratio.simd_cbrt(),
+        2 => ratio.sqrt(),
+        _ => ratio.cbrt(),
     }
 }
 
