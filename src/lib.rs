@@ -34,16 +34,17 @@
 //! | floor | modules |
 //! |---|---|
 //! | 12 | [`cli`]: one file a verb |
-//! | 10 | `plot`: charts; [`export`]: motions in formats that other tools read |
-//! | 9 | `analysis`: from stored runs to tables |
-//! | 8 | `experiment`: config, instances, plan, runner, store |
-//! | 7 | [`optimiser`]: one file an optimiser |
-//! | 6 | [`oracle`]: budget, counters, best so far, trace |
-//! | 5 | [`problem`]: the reorientation task in its formulations, the best motions known, test functions |
-//! | 4 | [`task`], [`attitude`] |
-//! | 3 | [`momentum`], [`trajectory`] |
-//! | 2 | [`kinematics`] |
-//! | 1 | [`robot`], [`so3`] |
+//! | 11 | `plot`: charts; [`export`]: motions in formats that other tools read |
+//! | 10 | `analysis`: from stored runs to tables |
+//! | 9 | `experiment`: config, instances, plan, runner, store |
+//! | 8 | [`optimiser`]: one file an optimiser |
+//! | 7 | [`oracle`]: budget, counters, best so far, trace |
+//! | 6 | [`problem`]: the reorientation task in its formulations, the best motions known, test functions |
+//! | 5 | [`task`], [`attitude`] |
+//! | 4 | [`momentum`], [`trajectory`] |
+//! | 3 | [`kinematics`], [`so3`] |
+//! | 2 | [`vec3`] |
+//! | 1 | [`lanes`], [`robot`] |
 //! | 0 | [`scalar`], [`input`], [`output`], [`digest`] |
 //!
 //! # Example
@@ -71,6 +72,7 @@ pub mod experiment;
 pub mod export;
 pub mod input;
 pub mod kinematics;
+pub mod lanes;
 pub mod momentum;
 pub mod optimiser;
 pub mod oracle;
@@ -83,3 +85,4 @@ pub mod scalar;
 pub mod so3;
 pub mod task;
 pub mod trajectory;
+pub mod vec3;

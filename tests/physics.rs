@@ -4,16 +4,15 @@ use std::fmt::Write as _;
 
 use driftless::attitude::net_rotation;
 use driftless::input::Document;
-use driftless::momentum::{RateSlopes, base_map, base_twist, total_momentum};
+use driftless::lanes::Width;
+use driftless::momentum::{Arm, Outer, RateSlopes, base_map, base_twist, total_momentum};
 use driftless::problem::{
     Accuracy, Boxes, Formulated, Formulation, Problem, Reorientation, TaskFile,
 };
 use driftless::robot::Robot;
-use driftless::scalar::Scalar;
 use driftless::trajectory::Peaks;
-use nalgebra::{Quaternion, SimdValue as _, UnitQuaternion};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
-use simba::simd::WideF64x4;
 
 fn paper() -> (Reorientation, Boxes) {
     let document = TaskFile::paper();
@@ -73,7 +72,7 @@ fn rotation_in_time(problem: &Reorientation, alpha: &[f64], t_f: f64) -> UnitQua
             angles.push(d1 * s.sin() + d2);
             rates.push(d1 * s.cos() * slope);
         }
-        base_twist(&task.robot, &angles, &rates).angular
+        Vector3::from(base_twist(&task.robot, &angles, &rates).angular)
     };
     let steps = 4000;
     let h = t_f / f64::from(steps);
@@ -110,6 +109,7 @@ proptest! {
         let robot = &paper().0.task().robot.clone();
         let (linear, angular) =
             total_momentum(robot, &angles, &rates, &base_twist(robot, &angles, &rates));
+        let [linear, angular] = [linear, angular].map(Vector3::from);
         prop_assert!(linear.norm() < 1e-10, "{linear}");
         prop_assert!(angular.norm() < 1e-10, "{angular}");
     }
@@ -124,6 +124,7 @@ proptest! {
         let (angles, rates) = (&angles[..rows.len()], &rates[..rows.len()]);
         let (linear, angular) =
             total_momentum(&robot, angles, rates, &base_twist(&robot, angles, rates));
+        let [linear, angular] = [linear, angular].map(Vector3::from);
         prop_assert!(linear.norm() < 1e-10, "{linear}");
         prop_assert!(angular.norm() < 1e-10, "{angular}");
     }
@@ -140,42 +141,74 @@ proptest! {
         let mut slopes = RateSlopes::new(&robot);
         slopes.evaluate(&robot, angles, rates);
         let map = base_map(&robot, angles);
-        let here = base_twist(&robot, angles, rates).angular;
-        prop_assert!((slopes.angular - here).norm() < 1e-12 * (1.0 + here.norm()));
+        let here = Vector3::from(base_twist(&robot, angles, rates).angular);
+        prop_assert!((Vector3::from(slopes.angular) - here).norm() < 1e-12 * (1.0 + here.norm()));
         for j in 0..rows.len() {
             let at = |step: f64| {
                 let mut angles = angles.to_vec();
                 angles[j] += step;
-                base_twist(&robot, &angles, rates).angular
+                Vector3::from(base_twist(&robot, &angles, rates).angular)
             };
             let h = 1e-3;
             let near = (at(h) - at(-h)) / (2.0 * h);
             let far = (at(2.0 * h) - at(-2.0 * h)) / (4.0 * h);
             let expected = (near * 4.0 - far) / 3.0;
-            let miss = (slopes.by_angle[j] - expected).norm();
+            let miss = (Vector3::from(slopes.by_angle[j]) - expected).norm();
             prop_assert!(miss < 1e-8 * (1.0 + expected.norm()), "{j}: {miss:e}");
-            let miss = (slopes.by_rate[j] - map.fixed_view::<3, 1>(3, j)).norm();
+            let miss = (Vector3::from(slopes.by_rate[j]) - map.fixed_view::<3, 1>(3, j)).norm();
             prop_assert!(miss < 1e-12, "{j}: {miss:e}");
         }
     }
 
-    /// Four states at once, one a lane, agree with one at a time.
+    /// The inward sweep of the fitness against the outward one, for any arm.
     #[test]
-    fn lanes_agree_with_scalars(
-        states in prop::array::uniform4(prop::collection::vec(-3.0..3.0, 12)),
+    fn both_sweeps_give_the_same_rate(
+        rows in rows(),
+        angles in prop::collection::vec(-5.0..5.0, 8),
+        rates in prop::collection::vec(-2.0..2.0, 8),
     ) {
-        let robot = &paper().0.task().robot.clone();
-        let lanes: Vec<WideF64x4> =
-            (0..12).map(|i| WideF64x4::from([0, 1, 2, 3].map(|lane| states[lane][i]))).collect();
-        let wide = base_twist(robot, &lanes[..6], &lanes[6..]);
-        for (lane, state) in states.iter().enumerate() {
-            let scalar = base_twist(robot, &state[..6], &state[6..]);
-            for k in 0..3 {
-                prop_assert!((wide.angular[k].extract(lane) - scalar.angular[k]).abs() < 1e-12);
-                prop_assert!((wide.linear[k].extract(lane) - scalar.linear[k]).abs() < 1e-12);
-            }
+        let robot = robot(&rows);
+        let (angles, rates) = (&angles[..rows.len()], &rates[..rows.len()]);
+        let arm = Arm::new(&robot);
+        let mut outer = Outer::<f64>::nothing();
+        for (link, (angle, &rate)) in arm.links().iter().zip(angles.iter().zip(rates)).rev() {
+            outer = link.inward(outer, f64::sin_cos(angle + link.offset()), rate);
         }
-        prop_assert_eq!(WideF64x4::of(2.5).extract(3), 2.5);
+        let inward = arm.mount() * Vector3::from(arm.base_rate(outer));
+        let outward = Vector3::from(base_twist(&robot, angles, rates).angular);
+        let miss = (inward - outward).norm();
+        prop_assert!(miss < 1e-13 * (1.0 + outward.norm()), "{miss:e}");
+    }
+
+    /// Any number of lanes, one point or many: the same cost, to the last bit where products and sums
+    /// are rounded at once, to 1e-12 otherwise; and `assess` finds it too.
+    #[test]
+    fn the_cost_does_not_depend_on_lanes(
+        unit in prop::collection::vec(-1.0..1.0, 36),
+        terms in 1_usize..=3,
+        stretch in 0.3..1.5,
+    ) {
+        let (paper, _) = paper();
+        let problem = Reorientation::new(paper.task().clone(), terms, paper.accuracy());
+        let coefficients = &unit[..problem.family().dimension()];
+        let shortest = problem.assess(coefficients, None);
+        for duration in [None, Some(stretch * shortest.duration)] {
+            let expected = problem.assess(coefficients, duration);
+            let mut fused = Vec::new();
+            for width in Width::available() {
+                let problem = problem.with_width(width);
+                let found = problem.evaluate(coefficients, duration, &mut problem.workspace());
+                let violation: f64 = expected.excess.iter().sum();
+                for (found, expected) in [(found.cost, expected.cost), (found.violation, violation)] {
+                    let miss = (found - expected).abs();
+                    prop_assert!(miss <= 1e-12 * expected.max(1.0), "{width:?}: {found} {expected}");
+                }
+                if width != Width::Scalar {
+                    fused.push(found.cost.to_bits());
+                }
+            }
+            prop_assert!(fused.windows(2).all(|pair| pair[0] == pair[1]), "{fused:x?}");
+        }
     }
 
     /// Eq. 15, for families of any number of terms.
@@ -186,7 +219,7 @@ proptest! {
     ) {
         let task = paper().0.task().clone();
         let problem = Reorientation::new(task.clone(), terms, Accuracy::FINE);
-        let path = problem.family().path::<f64>(&unit[..problem.family().dimension()]);
+        let path = problem.family().path(&unit[..problem.family().dimension()]);
         for (i, joint) in path.joints().enumerate() {
             let (start, end) = (joint.derivatives::<5>(0.0), joint.derivatives::<5>(1.0));
             prop_assert!((start[0] - task.start.joints[i]).abs() < 1e-10);
@@ -234,7 +267,7 @@ proptest! {
             for k in 0..3 {
                 let dense = samples.iter().map(|s| s[k + 1].abs()).fold(0.0, f64::max);
                 for (intervals, missed) in looks {
-                    let peak = Peaks::of(&path, intervals).0[i][k];
+                    let peak = Peaks::of(problem.family(), &coefficients, intervals).0[i][k];
                     let error = (peak.value - dense) / dense;
                     prop_assert!((-missed..1e-6).contains(&error), "order {}: {error:e}", k + 1);
                     let there = joint.derivatives::<5>(peak.tau)[k + 1].abs();

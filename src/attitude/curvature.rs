@@ -1,11 +1,13 @@
 //! The second derivative of the base's rotation by the path's coefficients.
 
-use nalgebra::{DMatrix, Matrix3, Matrix3xX, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, Matrix3xX, Vector3};
 
-use super::node::Node;
+use super::node::{Evaluator, Node};
+use crate::lanes::{Lanes, MOST};
 use crate::robot::Robot;
-use crate::so3;
-use crate::trajectory::{Basis, Path};
+use crate::so3::{self, Quat};
+use crate::trajectory::{Family, Grid};
+use crate::vec3::{Mat3, Vec3};
 
 /// How the end of a path turns with its coefficients, to second order.
 #[derive(Debug, Clone)]
@@ -20,88 +22,142 @@ pub struct RotationCurvature {
 /// Step of the differences that stand for the second derivatives of the base's rate.
 const STEP: f64 = 1e-5;
 
-/// First and second derivative, by the midpoint rule: of second order, so for a few digits.
-///
-/// The base's rate `ω` bends with the coefficients, and what a node adds to the end, `e`, is turned by
-/// the nodes that follow it, hence with the given vector `p`
-///
-/// ```text
-///     Σ_n  Q_n p · ∂²ω/∂c_k ∂c_l  +  p · (e_nk × Σ_{m>n} e_ml)      symmetric in k and l
-/// ```
-pub fn net_rotation_curvature(
-    robot: &Robot,
-    path: &Path<'_, f64>,
+/// Second derivatives by the midpoint rule: of second order, so for a few digits.
+#[derive(Debug, Clone)]
+pub struct Midpoints {
     steps: usize,
-    p: &Vector3<f64>,
-) -> RotationCurvature {
-    let width = 1.0 / steps as f64;
-    let dimension = path.dimension();
-    let mut by_coefficient = Matrix3xX::zeros(dimension);
-    let mut own = by_coefficient.clone();
-    let mut curvature = DMatrix::zeros(dimension, dimension);
-    let mut following = UnitQuaternion::identity();
-    let (mut node, mut beside) = (Node::new(robot), Node::new(robot));
-    for step in (0..steps).rev() {
-        let tau = (step as f64 + 0.5) * width;
-        node.evaluate(robot, path, tau);
-        let half = so3::exp(&(node.rate() * (width / 2.0)));
-        following = half * following;
-        let turn: Matrix3<f64> = following.inverse().to_rotation_matrix().into_inner() * width;
-        own.fill(0.0);
-        node.add_slopes(path.basis(), tau, &turn, &mut own);
-        curvature.gemm_tr(1.0, &(p.cross_matrix() * &own), &by_coefficient, 1.0);
-        by_coefficient += &own;
-        let bent = bend(&node, &mut beside, robot, path, &turn.tr_mul(p));
-        add_bend(&bent, path.basis(), tau, &mut curvature);
-        following = half * following;
+    /// Times beyond the last step are the path's start, where nothing depends on coefficients.
+    grid: Grid<2>,
+}
+
+/// As many midpoints as there are lanes.
+struct Part<T> {
+    first: usize,
+    phases: Vec<[T; 2]>,
+    node: Node<T>,
+}
+
+impl Midpoints {
+    /// At the middles of so many steps.
+    pub fn new(family: &Family, steps: usize) -> Self {
+        let times = (0..steps.next_multiple_of(MOST))
+            .map(|i| if i < steps { (i as f64 + 0.5) / steps as f64 } else { 0.0 });
+        Self { steps, grid: Grid::new(family, times) }
     }
-    curvature = (&curvature + curvature.transpose()) / 2.0;
-    RotationCurvature { by_coefficient, curvature }
-}
 
-/// Second derivatives of `p · ω` by the joints' `s`, and by `s'` (row) and `s` (column); those by
-/// `s'` alone vanish.
-struct Bend {
-    phases: DMatrix<f64>,
-    mixed: DMatrix<f64>,
-}
-
-fn bend(
-    node: &Node,
-    beside: &mut Node,
-    robot: &Robot,
-    path: &Path<'_, f64>,
-    p: &Vector3<f64>,
-) -> Bend {
-    let joints = robot.joint_count();
-    let mut bend =
-        Bend { phases: DMatrix::zeros(joints, joints), mixed: DMatrix::zeros(joints, joints) };
-    beside.phases.copy_from_slice(&node.phases);
-    for j in 0..joints {
-        beside.phases[j][0] += STEP;
-        beside.evaluate_at_phases(robot, path);
-        beside.phases[j] = node.phases[j];
-        for i in 0..joints {
-            bend.phases[(i, j)] = p.dot(&(beside.by_phase[i] - node.by_phase[i])) / STEP;
-            bend.mixed[(i, j)] = p.dot(&(beside.by_phase_rate[i] - node.by_phase_rate[i])) / STEP;
+    /// First and second derivative.
+    ///
+    /// The base's rate `ω` bends with the coefficients, and what a node adds to the end, `e`, is turned
+    /// by the nodes that follow it, hence with the given vector `p`
+    ///
+    /// ```text
+    ///     Σ_n  Q_n p · ∂²ω/∂c_k ∂c_l  +  p · (e_nk × Σ_{m>n} e_ml)      symmetric in k and l
+    /// ```
+    #[inline(always)]
+    pub fn curvature<T: Lanes>(
+        &self,
+        robot: &Robot,
+        family: &Family,
+        coefficients: &[f64],
+        p: &Vector3<f64>,
+    ) -> RotationCurvature {
+        let width = 1.0 / self.steps as f64;
+        let mut evaluator = Evaluator::<T>::new(robot, family);
+        let mut parts = Vec::new();
+        let mut following = vec![Quat::identity(); self.grid.len()];
+        for first in (0..self.grid.len()).step_by(T::COUNT) {
+            let phases = evaluator.phases(&self.grid, first, coefficients);
+            let node = evaluator.evaluate(&phases);
+            so3::exp(node.rate.times(width / 2.0)).spread(&mut following[first..]);
+            parts.push(Part { first, phases, node });
         }
-    }
-    bend
-}
+        let mut end = Quat::identity();
+        for half in following.iter_mut().rev() {
+            let own = *half;
+            *half = own.then(end);
+            end = own.then(*half);
+        }
 
-/// Adds what the bend means for the coefficients, once symmetrised; of the mixed derivatives both
-/// halves stand on one side.
-fn add_bend(bend: &Bend, basis: &Basis, tau: f64, sum: &mut DMatrix<f64>) {
-    let terms = basis.terms();
-    let bumps: Vec<[f64; 2]> = basis.bumps(tau).collect();
-    for (i, j) in
-        (0..bend.phases.nrows()).flat_map(|i| (0..bend.phases.ncols()).map(move |j| (i, j)))
-    {
-        for (k, [value, slope]) in bumps.iter().enumerate() {
-            let row = value * bend.phases[(i, j)] + 2.0 * slope * bend.mixed[(i, j)];
-            for (l, [other, _]) in bumps.iter().enumerate() {
-                sum[(i * terms + k, j * terms + l)] += row * other;
+        let dimension = family.dimension();
+        let mut curvature = DMatrix::zeros(dimension, dimension);
+        let mut slopes = vec![Matrix3xX::zeros(dimension); self.grid.len()];
+        for part in parts {
+            let turn = Quat::<T>::gather(&following[part.first..]);
+            let turn_back = turn.inverse().matrix().times(width);
+            self.add_slopes(family, &part, turn_back, &mut slopes);
+            let p = turn_back.tr_mul(Vec3::of(p));
+            self.add_bend(&mut evaluator, family, part, p, &mut curvature);
+        }
+        let mut by_coefficient = Matrix3xX::zeros(dimension);
+        for own in slopes[..self.steps].iter().rev() {
+            curvature.gemm_tr(1.0, &(p.cross_matrix() * own), &by_coefficient, 1.0);
+            by_coefficient += own;
+        }
+        curvature = (&curvature + curvature.transpose()) / 2.0;
+        RotationCurvature { by_coefficient, curvature }
+    }
+
+    /// What each node adds to the first derivatives.
+    #[inline(always)]
+    fn add_slopes<T: Lanes>(
+        &self,
+        family: &Family,
+        Part { first, node, .. }: &Part<T>,
+        turn: Mat3<T>,
+        slopes: &mut [Matrix3xX<f64>],
+    ) {
+        let terms = family.terms();
+        for joint in 0..family.joints() {
+            for k in 0..terms {
+                let [bump, slope] = self.grid.part(k + 1, *first);
+                let change = node.by_phase[joint] * bump + node.by_phase_rate[joint] * slope;
+                let column = joint * terms + k;
+                let each = (turn * change).lanes();
+                for (own, change) in slopes[*first..].iter_mut().zip(&each[..T::COUNT]) {
+                    own.set_column(column, &Vector3::from(*change));
+                }
             }
         }
     }
+
+    /// Adds the second derivatives of `p · ω`, once symmetrised: those by the joints' `s`, and by `s'`
+    /// (row) and `s` (column), both halves of which stand on one side; those by `s'` alone vanish.
+    #[inline(always)]
+    fn add_bend<T: Lanes>(
+        &self,
+        evaluator: &mut Evaluator<'_, T>,
+        family: &Family,
+        Part { first, mut phases, node }: Part<T>,
+        p: Vec3<T>,
+        sum: &mut DMatrix<f64>,
+    ) {
+        let (terms, joints) = (family.terms(), family.joints());
+        let mut bumps: Vec<[T; 2]> = Vec::with_capacity(terms);
+        for k in 0..terms {
+            bumps.push(self.grid.part(k + 1, first));
+        }
+        for j in 0..joints {
+            let here = phases[j];
+            phases[j][0] += T::of(STEP);
+            let beside = evaluator.evaluate(&phases);
+            phases[j] = here;
+            for i in 0..joints {
+                let per_step = T::of(1.0 / STEP);
+                let phase = p.dot(beside.by_phase[i] - node.by_phase[i]) * per_step;
+                let mixed = p.dot(beside.by_phase_rate[i] - node.by_phase_rate[i]) * per_step;
+                for (k, &[value, slope]) in bumps.iter().enumerate() {
+                    let row = value * phase + (slope + slope) * mixed;
+                    for (l, &[other, _]) in bumps.iter().enumerate() {
+                        sum[(i * terms + k, j * terms + l)] += sum_of_lanes(row * other);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// One lane after the other.
+#[inline(always)]
+fn sum_of_lanes<T: Lanes>(lanes: T) -> f64 {
+    lanes.numbers()[..T::COUNT].iter().sum()
 }

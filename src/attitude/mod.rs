@@ -6,64 +6,90 @@
 
 mod curvature;
 mod node;
+mod rollout;
 mod slopes;
 
-pub use curvature::{RotationCurvature, net_rotation_curvature};
-pub use slopes::{RotationSlopes, net_rotation_slopes};
+pub use curvature::{Midpoints, RotationCurvature};
+pub use rollout::{JointState, Rollout};
+pub use slopes::RotationSlopes;
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::UnitQuaternion;
 
 use crate::momentum::base_twist;
 use crate::robot::Robot;
 use crate::scalar::Scalar;
 use crate::so3;
 use crate::trajectory::Path;
+use crate::vec3::{Mat3, Vec3};
 
-/// `√15`, in the sixth-order step and its three Gauss–Legendre nodes.
+/// `√15`, in the three Gauss–Legendre nodes.
 const SQRT_15: f64 = 3.872_983_346_207_417;
 
-/// Where the nodes lie in a step, in its widths.
-const NODES: [f64; 3] = [0.5 - SQRT_15 / 10.0, 0.5, 0.5 + SQRT_15 / 10.0];
+/// Where three Gauss–Legendre nodes lie in a step, in its widths.
+const GAUSS: [f64; 3] = [0.5 - SQRT_15 / 10.0, 0.5, 0.5 + SQRT_15 / 10.0];
 
 /// The rotations of `steps` equal steps of the path, in order; their product turns the attitude at
 /// the start into the attitude at the end.
 ///
-/// One step is the sixth-order Magnus exponential on three Gauss nodes (Blanes, Casas, Oteo and Ros
-/// 2009, doi:10.1016/j.physrep.2008.11.001, section 5.4), with the signs of an equation that
-/// multiplies from the right.
-pub fn increments<'a, T: Scalar>(
+/// Every step has three nodes of its own: the plain form of what [`Rollout`] does.
+pub fn increments<'a>(
     robot: &'a Robot,
-    path: &'a Path<'_, T>,
+    path: &'a Path<'_>,
     steps: usize,
-) -> impl ExactSizeIterator<Item = UnitQuaternion<T>> {
+) -> impl ExactSizeIterator<Item = UnitQuaternion<f64>> {
     let width = 1.0 / steps as f64;
-    let mut angles = vec![T::zero(); robot.joint_count()];
+    let mut angles = vec![0.0; robot.joint_count()];
     let mut rates = angles.clone();
     (0..steps).map(move |i| {
-        let mut step_rate = |node: f64| {
+        let mut rate = |node: f64| {
             path.angles_and_rates((i as f64 + node) * width, &mut angles, &mut rates);
-            base_twist(robot, &angles, &rates).angular * T::of(width)
+            base_twist(robot, &angles, &rates).angular * width
         };
-        so3::exp(&magnus(NODES.map(&mut step_rate)))
+        let [w1, w2, w3] = GAUSS.map(&mut rate);
+        let moments = [w2, (w3 - w1) * (SQRT_15 / 3.0), (w3 - w2 * 2.0 + w1) * (10.0 / 3.0)];
+        so3::exp(magnus(moments)).into()
     })
 }
 
-/// The rotation vector of a step from the rates at its three nodes, times its width.
-fn magnus<T: Scalar>([w1, w2, w3]: [Vector3<T>; 3]) -> Vector3<T> {
-    let a1 = w2;
-    let a2 = (w3 - w1) * T::of(SQRT_15 / 3.0);
-    let a3 = (w3 - w2 * T::of(2.0) + w1) * T::of(10.0 / 3.0);
-    let c1 = a2.cross(&a1);
-    let c2 = a1.cross(&(a3 * T::of(2.0) + c1)) * T::of(1.0 / 60.0);
-    let commutator = (c1 - a1 * T::of(20.0) - a3).cross(&(a2 + c2));
-    a1 + a3 * T::of(1.0 / 12.0) - commutator * T::of(1.0 / 240.0)
+/// The rotation of the base over the whole path, from its attitude at the start, in base axes.
+pub fn net_rotation(robot: &Robot, path: &Path<'_>, steps: usize) -> UnitQuaternion<f64> {
+    increments(robot, path, steps).fold(UnitQuaternion::identity(), |net, step| net * step)
 }
 
-/// The rotation of the base over the whole path, from its attitude at the start, in base axes.
-pub fn net_rotation<T: Scalar>(
-    robot: &Robot,
-    path: &Path<'_, T>,
-    steps: usize,
-) -> UnitQuaternion<T> {
-    increments(robot, path, steps).fold(UnitQuaternion::identity(), |net, step| net * step)
+/// The rotation vector of a step, to sixth order, from its moments: `a₁ + a₂ t + a₃ t²`, `t` from −½ to ½
+/// over the step, is the rate times the step's width (Blanes, Casas, Oteo and Ros 2009,
+/// doi:10.1016/j.physrep.2008.11.001, section 5.4, with the signs of an equation that multiplies from
+/// the right).
+#[inline(always)]
+fn magnus<T: Scalar>([a1, a2, a3]: [Vec3<T>; 3]) -> Vec3<T> {
+    let c1 = a2.cross(a1);
+    let c2 = a1.cross(a3.times(2.0) + c1).times(1.0 / 60.0);
+    let commutator = (c1 - a1.times(20.0) - a3).cross(a2 + c2);
+    a1 + a3.times(1.0 / 12.0) - commutator.times(1.0 / 240.0)
+}
+
+/// Derivatives of [`magnus`] by the three moments, in its order and with its letters.
+#[inline(always)]
+fn magnus_slopes<T: Scalar>([a1, a2, a3]: [Vec3<T>; 3]) -> [Mat3<T>; 3] {
+    let c1 = a2.cross(a1);
+    let inner = a3.times(2.0) + c1;
+    let c2 = a1.cross(inner).times(1.0 / 60.0);
+    let left = Mat3::cross(c1 - a1.times(20.0) - a3);
+    let right = Mat3::cross(a2 + c2);
+    let (x1, x2, inner) = (Mat3::cross(a1), Mat3::cross(a2), Mat3::cross(inner));
+
+    let one = |factor: f64| Mat3::diagonal(T::of(factor));
+    // Derivatives of c1 and c2, then of the commutator, by a1, a2 and a3.
+    let (c1_1, c1_2) = (x2, -x1);
+    let c2_1 = (x1 * c1_1 - inner).times(1.0 / 60.0);
+    let c2_2 = (x1 * c1_2).times(1.0 / 60.0);
+    let c2_3 = x1.times(1.0 / 30.0);
+    let by_1 = left * c2_1 - right * (c1_1 - one(20.0));
+    let by_2 = left * (one(1.0) + c2_2) - right * c1_2;
+    let by_3 = left * c2_3 + right;
+    [
+        one(1.0) - by_1.times(1.0 / 240.0),
+        -by_2.times(1.0 / 240.0),
+        one(1.0 / 12.0) - by_3.times(1.0 / 240.0),
+    ]
 }

@@ -1,82 +1,77 @@
-//! The base's rate at one time of a path, and how it follows the joints' phases.
+//! The base's rate at one time of a path a lane, and how it follows the joints' phases.
 
-use nalgebra::{Matrix3, Matrix3xX, Vector3};
-
+use crate::lanes::Lanes;
 use crate::momentum::RateSlopes;
 use crate::robot::Robot;
-use crate::trajectory::{AtPhase, Basis, Path};
+use crate::trajectory::{AtPhase, Family, Grid};
+use crate::vec3::Vec3;
 
-/// The base's rate at one time of a path, with its derivatives by each joint's phase `s` and by `s'`.
-pub(super) struct Node {
-    /// `s` and `s'` of each joint.
-    pub(super) phases: Vec<[f64; 2]>,
+/// The base's rate `ω` \[rad\], by normalised time, with its derivatives by each joint's phase `s` and
+/// by `s'`.
+pub(super) struct Node<T> {
+    pub(super) rate: Vec3<T>,
     /// `∂ω/∂s`.
-    pub(super) by_phase: Vec<Vector3<f64>>,
+    pub(super) by_phase: Vec<Vec3<T>>,
     /// `∂ω/∂s'`.
-    pub(super) by_phase_rate: Vec<Vector3<f64>>,
-    joints: Vec<AtPhase<f64>>,
-    angles: Vec<f64>,
-    rates: Vec<f64>,
-    slopes: RateSlopes<f64>,
+    pub(super) by_phase_rate: Vec<Vec3<T>>,
 }
 
-impl Node {
-    pub(super) fn new(robot: &Robot) -> Self {
+/// Room to evaluate nodes in.
+pub(super) struct Evaluator<'a, T> {
+    robot: &'a Robot,
+    family: &'a Family,
+    joints: Vec<AtPhase<T>>,
+    angles: Vec<T>,
+    rates: Vec<T>,
+    slopes: RateSlopes<T>,
+}
+
+impl<'a, T: Lanes> Evaluator<'a, T> {
+    #[inline(always)]
+    pub(super) fn new(robot: &'a Robot, family: &'a Family) -> Self {
         let joints = robot.joint_count();
-        let (numbers, vectors) = (vec![0.0; joints], vec![Vector3::zeros(); joints]);
+        let zeros = vec![T::of(0.0); joints];
         Self {
-            phases: vec![[0.0; 2]; joints],
-            by_phase: vectors.clone(),
-            by_phase_rate: vectors,
+            robot,
+            family,
             joints: Vec::with_capacity(joints),
-            angles: numbers.clone(),
-            rates: numbers,
+            angles: zeros.clone(),
+            rates: zeros,
             slopes: RateSlopes::new(robot),
         }
     }
 
-    pub(super) fn evaluate(&mut self, robot: &Robot, path: &Path<'_, f64>, tau: f64) {
-        for (phase, joint) in self.phases.iter_mut().zip(path.joints()) {
-            *phase = joint.phase(tau);
+    /// The phases of all joints, with their derivatives, from a place in a grid on.
+    #[inline(always)]
+    pub(super) fn phases(&self, grid: &Grid<2>, place: usize, coefficients: &[f64]) -> Vec<[T; 2]> {
+        let mut phases = Vec::with_capacity(self.family.joints());
+        for joint in 0..self.family.joints() {
+            let own = self.family.of_joint(joint, coefficients);
+            phases.push(self.family.phase(grid, place, joint, own));
         }
-        self.evaluate_at_phases(robot, path);
+        phases
     }
 
-    /// The same at phases written before, whether the path meets them or not.
-    pub(super) fn evaluate_at_phases(&mut self, robot: &Robot, path: &Path<'_, f64>) {
+    /// The node where joints have these phases, whether a path meets them or not.
+    #[inline(always)]
+    pub(super) fn evaluate(&mut self, phases: &[[T; 2]]) -> Node<T> {
         self.joints.clear();
-        self.joints.extend(path.joints().zip(&self.phases).map(|(joint, s)| joint.at_phase(*s)));
-        for (j, at) in self.joints.iter().enumerate() {
-            (self.angles[j], self.rates[j]) = (at.angle, at.rate);
+        for (joint, &phase) in phases.iter().enumerate() {
+            let at = self.family.at_phase(joint, phase);
+            (self.angles[joint], self.rates[joint]) = (at.angle, at.rate);
+            self.joints.push(at);
         }
-        self.slopes.evaluate(robot, &self.angles, &self.rates);
-        for (j, at) in self.joints.iter().enumerate() {
-            let (by_angle, by_rate) = (self.slopes.by_angle[j], self.slopes.by_rate[j]);
-            self.by_phase[j] = by_angle * at.angle_slope + by_rate * at.rate_slope;
-            self.by_phase_rate[j] = by_rate * at.angle_slope;
+        self.slopes.evaluate(self.robot, &self.angles, &self.rates);
+        let mut node = Node {
+            rate: self.slopes.angular,
+            by_phase: Vec::with_capacity(phases.len()),
+            by_phase_rate: Vec::with_capacity(phases.len()),
+        };
+        for (joint, at) in self.joints.iter().enumerate() {
+            let (by_angle, by_rate) = (self.slopes.by_angle[joint], self.slopes.by_rate[joint]);
+            node.by_phase.push(by_angle * at.angle_slope + by_rate * at.rate_slope);
+            node.by_phase_rate.push(by_rate * at.angle_slope);
         }
-    }
-
-    /// `ω` \[rad\], by normalised time.
-    pub(super) fn rate(&self) -> Vector3<f64> {
-        self.slopes.angular
-    }
-
-    /// Adds `turn · ∂ω/∂c` for every coefficient `c` of the path.
-    pub(super) fn add_slopes(
-        &self,
-        basis: &Basis,
-        tau: f64,
-        turn: &Matrix3<f64>,
-        sum: &mut Matrix3xX<f64>,
-    ) {
-        for (k, [bump, bump_slope]) in basis.bumps(tau).enumerate() {
-            let columns = (k..).step_by(basis.terms());
-            for (j, column) in (0..self.joints.len()).zip(columns) {
-                let change = self.by_phase[j] * bump + self.by_phase_rate[j] * bump_slope;
-                let mut column = sum.column_mut(column);
-                column += turn * change;
-            }
-        }
+        node
     }
 }

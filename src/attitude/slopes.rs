@@ -1,12 +1,15 @@
 //! The base's rotation along a path with its derivatives by the path's coefficients.
 
-use nalgebra::{Matrix3, Matrix3xX, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3xX, UnitQuaternion, Vector3};
 
-use super::node::Node;
-use super::{NODES, SQRT_15, magnus};
+use super::node::{Evaluator, Node};
+use super::rollout::{NODES, Rollout, STEPS, step_moments};
+use super::{magnus, magnus_slopes};
+use crate::lanes::{Lanes, MOST};
 use crate::robot::Robot;
-use crate::so3;
-use crate::trajectory::Path;
+use crate::so3::{self, Quat};
+use crate::trajectory::Family;
+use crate::vec3::{Mat3, Vec3};
 
 /// The base's rotation over a path and how it changes with the path.
 #[derive(Debug, Clone)]
@@ -17,57 +20,119 @@ pub struct RotationSlopes {
     pub by_coefficient: Matrix3xX<f64>,
 }
 
-/// [`net_rotation`](super::net_rotation) with its derivatives.
-///
-/// A change of the rotation vector `Ω` of one step turns the end by `Qᵀ J(Ω) dΩ`, where `J` is the
-/// right Jacobian and `Q` the rotation of all steps that follow.
-pub fn net_rotation_slopes(robot: &Robot, path: &Path<'_, f64>, steps: usize) -> RotationSlopes {
-    let width = 1.0 / steps as f64;
-    let mut rotation = UnitQuaternion::identity();
-    let mut by_coefficient = Matrix3xX::zeros(path.dimension());
-    let mut nodes = std::array::from_fn(|_| Node::new(robot));
-    for step in (0..steps).rev() {
-        let times = NODES.map(|node| (step as f64 + node) * width);
-        for (node, tau) in nodes.iter_mut().zip(times) {
-            node.evaluate(robot, path, tau);
-        }
-        let rates = nodes.each_ref().map(|node| node.rate() * width);
-        let vector = magnus(rates);
-        let following = rotation.to_rotation_matrix();
-        let turn = following.matrix().transpose() * so3::right_jacobian(&vector) * width;
-        for ((node, tau), by_rate) in nodes.iter().zip(times).zip(magnus_slopes(rates)) {
-            node.add_slopes(path.basis(), tau, &(turn * by_rate), &mut by_coefficient);
-        }
-        rotation = so3::exp(&vector) * rotation;
-    }
-    RotationSlopes { rotation, by_coefficient }
+/// As many panels as there are lanes.
+struct Panels<T> {
+    first: usize,
+    nodes: Vec<Node<T>>,
+    moments: [[Vec3<T>; 3]; STEPS],
+    /// The rotation of each step.
+    steps: [Quat<T>; STEPS],
 }
 
-/// Derivatives of [`magnus`] by the rates at its three nodes.
-fn magnus_slopes([w1, w2, w3]: [Vector3<f64>; 3]) -> [Matrix3<f64>; 3] {
-    // In the order and with the letters of `magnus`.
-    let a1 = w2;
-    let a2 = (w3 - w1) * (SQRT_15 / 3.0);
-    let a3 = (w3 - w2 * 2.0 + w1) * (10.0 / 3.0);
-    let c1 = a2.cross(&a1);
-    let inner = a3 * 2.0 + c1;
-    let c2 = a1.cross(&inner) / 60.0;
-    let left = (c1 - a1 * 20.0 - a3).cross_matrix();
-    let right = (a2 + c2).cross_matrix();
-    let [x1, x2, inner] = [a1, a2, inner].map(|v| v.cross_matrix());
+impl Rollout {
+    /// [`net_rotation`](Self::net_rotation), in base axes, with its derivatives.
+    ///
+    /// A change of the rotation vector `Ω` of one step turns the end by `Qᵀ J(Ω) dΩ`, where `J` is the
+    /// right Jacobian and `Q` the rotation of all steps that follow.
+    #[inline(always)]
+    pub fn slopes<T: Lanes>(
+        &self,
+        robot: &Robot,
+        family: &Family,
+        coefficients: &[f64],
+    ) -> RotationSlopes {
+        let mut evaluator = Evaluator::<T>::new(robot, family);
+        let mut all = Vec::new();
+        let mut rotations = Vec::new();
+        for first in self.groups().flat_map(|group| (group..group + MOST).step_by(T::COUNT)) {
+            let panels = self.panels(&mut evaluator, coefficients, first);
+            let mut rotation = panels.steps[0];
+            for step in &panels.steps[1..] {
+                rotation = rotation.then(*step);
+            }
+            rotations.resize(first + T::COUNT, Quat::identity());
+            rotation.spread(&mut rotations[first..]);
+            all.push(panels);
+        }
+        let mut net = Quat::identity();
+        for rotation in rotations.iter_mut().rev() {
+            // What follows a panel takes its place.
+            let following = net;
+            net = rotation.then(net);
+            *rotation = following;
+        }
+        let mut by_coefficient = Matrix3xX::zeros(family.dimension());
+        for panels in &all {
+            let sums = self.turns(family, panels, Quat::gather(&rotations[panels.first..]));
+            for (mut column, sum) in by_coefficient.column_iter_mut().zip(sums) {
+                for part in &sum.lanes()[..T::COUNT] {
+                    column += Vector3::from(*part);
+                }
+            }
+        }
+        RotationSlopes { rotation: net.into(), by_coefficient }
+    }
 
-    let one = Matrix3::identity();
-    // Derivatives of c1 and c2, then of the commutator, by a1, a2 and a3.
-    let (c1_1, c1_2) = (x2, -x1);
-    let (c2_1, c2_2, c2_3) = ((x1 * c1_1 - inner) / 60.0, x1 * c1_2 / 60.0, x1 / 30.0);
-    let by_1 = left * c2_1 - right * (c1_1 - one * 20.0);
-    let by_2 = left * (one + c2_2) - right * c1_2;
-    let by_3 = left * c2_3 + right;
-    let d1 = one - by_1 / 240.0;
-    let d2 = -by_2 / 240.0;
-    let d3 = one / 12.0 - by_3 / 240.0;
+    /// Everything of the panels from `first` on that does not depend on others.
+    #[inline(always)]
+    fn panels<T: Lanes>(
+        &self,
+        evaluator: &mut Evaluator<'_, T>,
+        coefficients: &[f64],
+        first: usize,
+    ) -> Panels<T> {
+        let mut nodes = Vec::with_capacity(NODES);
+        let mut rates = [Vec3::zero(); NODES];
+        for (n, rate) in rates.iter_mut().enumerate() {
+            let phases = evaluator.phases(&self.grid, Self::place(first, n), coefficients);
+            let node = evaluator.evaluate(&phases);
+            *rate = node.rate;
+            nodes.push(node);
+        }
+        let mut moments = [[Vec3::zero(); 3]; STEPS];
+        let mut steps = [Quat::identity(); STEPS];
+        for step in 0..STEPS {
+            moments[step] = step_moments(&self.moments[step], &rates);
+            steps[step] = so3::exp(magnus(moments[step]));
+        }
+        Panels { first, nodes, moments, steps }
+    }
 
-    let odd = d2 * (SQRT_15 / 3.0);
-    let even = d3 * (10.0 / 3.0);
-    [even - odd, d1 - even * 2.0, even + odd]
+    /// What each coefficient's change within a lane's panel turns the path's end by, `following` being
+    /// the rotation of all panels that follow.
+    #[inline(always)]
+    fn turns<T: Lanes>(
+        &self,
+        family: &Family,
+        panels: &Panels<T>,
+        mut following: Quat<T>,
+    ) -> Vec<Vec3<T>> {
+        let zero = Mat3::diagonal(T::of(0.0));
+        let mut turns = [zero; NODES];
+        for step in (0..STEPS).rev() {
+            let moments = panels.moments[step];
+            let turn = following.inverse().matrix() * so3::right_jacobian(magnus(moments));
+            for (slope, weights) in magnus_slopes(moments).into_iter().zip(&self.moments[step]) {
+                let by_moment = turn * slope;
+                for n in 0..NODES {
+                    turns[n] = turns[n] + by_moment.times(weights[n]);
+                }
+            }
+            following = panels.steps[step].then(following);
+        }
+        let terms = family.terms();
+        let mut sums = vec![Vec3::zero(); family.dimension()];
+        for (n, node) in panels.nodes.iter().enumerate() {
+            let place = Self::place(panels.first, n);
+            for joint in 0..family.joints() {
+                let by_phase = turns[n] * node.by_phase[joint];
+                let by_phase_rate = turns[n] * node.by_phase_rate[joint];
+                for k in 0..terms {
+                    let [bump, slope] = self.grid.part(k + 1, place);
+                    sums[joint * terms + k] += by_phase * bump + by_phase_rate * slope;
+                }
+            }
+        }
+        sums
+    }
 }

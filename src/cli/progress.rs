@@ -3,7 +3,7 @@
 use std::io::IsTerminal as _;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::{JoinHandle, spawn};
+use std::thread::{JoinHandle, park_timeout, spawn};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -40,7 +40,7 @@ impl Bar {
                         said = Instant::now();
                         eprintln!("{} of {evaluations} evaluations", watch.evaluations());
                     }
-                    std::thread::sleep(Duration::from_millis(100));
+                    park_timeout(Duration::from_millis(100));
                 }
             })
         };
@@ -62,6 +62,7 @@ impl Drop for Bar {
     fn drop(&mut self) {
         self.done.store(true, Ordering::Relaxed);
         if let Some(painter) = self.painter.take() {
+            painter.thread().unpark();
             // A painter that panicked has nothing more to paint.
             let _ = painter.join();
         }

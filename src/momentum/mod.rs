@@ -1,30 +1,34 @@
 //! How the base answers the joints when total momentum is zero (eqs. 5–7), in base axes.
 
+mod arm;
 mod slopes;
 
+pub use arm::{Arm, ArmLink, Outer};
 pub use slopes::RateSlopes;
 
 use std::ops::{AddAssign, Mul, SubAssign};
 
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::Vector6;
 
 use crate::kinematics::{Jacobian, LinkPose, Outward, base_jacobian, manipulator_jacobian};
 use crate::robot::{Body, Robot};
 use crate::scalar::Scalar;
+use crate::vec3::{Sym3, Vec3};
 
 /// Linear and angular velocity of the base, along base axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Twist<T> {
     /// Velocity of the base's centre of mass \[m/s\].
-    pub linear: Vector3<T>,
+    pub linear: Vec3<T>,
     /// Angular velocity \[rad/s\].
-    pub angular: Vector3<T>,
+    pub angular: Vec3<T>,
 }
 
 /// The base's twist for joint angles \[rad\] and rates \[rad/s\] with zero total momentum.
 ///
 /// One outward sweep with the base held still gives the arm's momentum and the composite inertia;
 /// about the system's centre of mass the angular part then stands alone, a 3×3 solve.
+#[inline(always)]
 pub fn base_twist<T: Scalar>(robot: &Robot, angles: &[T], rates: &[T]) -> Twist<T> {
     let (balance, momentum) = sweep(robot, angles, rates, |_| {});
     balance.twist(&momentum)
@@ -41,6 +45,7 @@ struct Link<T> {
 
 /// The outward sweep with the base held still: the whole system and the arm's momentum; `each` is told
 /// every link.
+#[inline(always)]
 fn sweep<T: Scalar>(
     robot: &Robot,
     angles: &[T],
@@ -50,8 +55,11 @@ fn sweep<T: Scalar>(
     let mut system = RigidBody::base(robot);
     let mut momentum = Momentum::zero();
     let mut twist = Twist::zero();
-    for (link, &rate) in Outward::new(robot, angles).zip(rates) {
-        let screw = Twist { linear: link.proximal.position.cross(&link.axis), angular: link.axis };
+    let mut outward = Outward::new(robot, angles);
+    for &rate in rates {
+        // Not by `zip`, which would not be inlined.
+        let Some(link) = outward.next() else { break };
+        let screw = Twist { linear: link.proximal.position.cross(link.axis), angular: link.axis };
         twist += screw * rate;
         let body = RigidBody::link(&link);
         momentum += body.momentum(&twist);
@@ -62,25 +70,28 @@ fn sweep<T: Scalar>(
 }
 
 impl<T: Scalar> Twist<T> {
+    #[inline(always)]
     fn zero() -> Self {
-        Self { linear: Vector3::zeros(), angular: Vector3::zeros() }
+        Self { linear: Vec3::zero(), angular: Vec3::zero() }
     }
 
     /// `S × t`: how a twist changes that turns with the screw `S`.
+    #[inline(always)]
     fn turned(&self, twist: &Self) -> Self {
         let Self { linear, angular } = self;
         Self {
-            linear: angular.cross(&twist.linear) + linear.cross(&twist.angular),
-            angular: angular.cross(&twist.angular),
+            linear: angular.cross(twist.linear) + linear.cross(twist.angular),
+            angular: angular.cross(twist.angular),
         }
     }
 
     /// `S ×* H`: how a momentum changes that turns with the screw `S`.
+    #[inline(always)]
     fn turned_momentum(&self, momentum: &Momentum<T>) -> Momentum<T> {
         let Self { linear, angular } = self;
         Momentum {
-            linear: angular.cross(&momentum.linear),
-            angular: angular.cross(&momentum.angular) + linear.cross(&momentum.linear),
+            linear: angular.cross(momentum.linear),
+            angular: angular.cross(momentum.angular) + linear.cross(momentum.linear),
         }
     }
 }
@@ -88,32 +99,36 @@ impl<T: Scalar> Twist<T> {
 impl<T: Scalar> Mul<T> for Twist<T> {
     type Output = Self;
 
+    #[inline(always)]
     fn mul(self, factor: T) -> Self {
         Self { linear: self.linear * factor, angular: self.angular * factor }
     }
 }
 
 impl<T: Scalar> AddAssign for Twist<T> {
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         self.linear += other.linear;
         self.angular += other.angular;
     }
 }
 
-/// Linear and angular momentum about the base's centre of mass.
+/// Linear and angular momentum about the origin.
 #[derive(Debug, Clone, Copy)]
 struct Momentum<T> {
-    linear: Vector3<T>,
-    angular: Vector3<T>,
+    linear: Vec3<T>,
+    angular: Vec3<T>,
 }
 
 impl<T: Scalar> Momentum<T> {
+    #[inline(always)]
     fn zero() -> Self {
-        Self { linear: Vector3::zeros(), angular: Vector3::zeros() }
+        Self { linear: Vec3::zero(), angular: Vec3::zero() }
     }
 }
 
 impl<T: Scalar> AddAssign for Momentum<T> {
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         self.linear += other.linear;
         self.angular += other.angular;
@@ -121,55 +136,69 @@ impl<T: Scalar> AddAssign for Momentum<T> {
 }
 
 impl<T: Scalar> SubAssign for Momentum<T> {
+    #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         self.linear -= other.linear;
         self.angular -= other.angular;
     }
 }
 
-/// Mass, first moment and inertia, about the base's centre of mass, of one body or of some that move
-/// as one.
+/// Mass, first moment and inertia, about the origin, of one body or of some that move as one. No
+/// configuration changes a mass: it is the same in every lane.
 #[derive(Debug, Clone, Copy)]
 struct RigidBody<T> {
-    mass: T,
-    first_moment: Vector3<T>,
-    inertia: Matrix3<T>,
+    mass: f64,
+    first_moment: Vec3<T>,
+    inertia: Sym3<T>,
 }
 
 impl<T: Scalar> RigidBody<T> {
+    #[inline(always)]
     fn none() -> Self {
-        Self { mass: T::zero(), first_moment: Vector3::zeros(), inertia: Matrix3::zeros() }
+        Self { mass: 0.0, first_moment: Vec3::zero(), inertia: Sym3::zero() }
     }
 
+    #[inline(always)]
     fn base(robot: &Robot) -> Self {
         let Body { mass, inertia } = &robot.base;
-        Self { mass: T::of(*mass), first_moment: Vector3::zeros(), inertia: inertia.map(T::of) }
+        Self { mass: *mass, first_moment: Vec3::zero(), inertia: Sym3::of(inertia) }
     }
 
+    #[inline(always)]
     fn link(link: &LinkPose<'_, T>) -> Self {
-        let mass = T::of(link.joint.link.mass);
-        let rotation = link.proximal.rotation;
-        let inertia = rotation * link.joint.link.inertia.map(T::of) * rotation.transpose();
-        let r = link.centre_of_mass;
-        Self { mass, first_moment: r * mass, inertia: inertia + point_inertia(mass, &r) }
+        let Body { mass, inertia } = link.joint.link;
+        let first_moment = link.centre_of_mass.times(mass);
+        let mut body = Self {
+            mass,
+            first_moment,
+            inertia: link.proximal.rotation.congruent(Sym3::of(&inertia)),
+        };
+        body.inertia += Sym3::point(link.centre_of_mass, first_moment);
+        body
     }
 
+    #[inline(always)]
     fn momentum(&self, twist: &Twist<T>) -> Momentum<T> {
         Momentum {
-            linear: twist.linear * self.mass + twist.angular.cross(&self.first_moment),
-            angular: self.inertia * twist.angular + self.first_moment.cross(&twist.linear),
+            linear: twist.linear.times(self.mass) + twist.angular.cross(self.first_moment),
+            angular: self.inertia * twist.angular + self.first_moment.cross(twist.linear),
         }
     }
 
     /// Ready to answer what twist of the whole balances a momentum.
+    #[inline(always)]
     fn balance(&self) -> Balance<T> {
-        let centre = self.first_moment / self.mass;
-        let inertia = self.inertia - point_inertia(self.mass, &centre);
-        Balance { mass: self.mass, centre, inverse: inverse(&inertia) }
+        let centre = self.first_moment.times(1.0 / self.mass);
+        let mut inertia = self.inertia;
+        inertia -= Sym3::point(centre, self.first_moment);
+        let (adjugate, determinant) = inertia.adjugate();
+        let inverse = adjugate * (T::of(1.0) / determinant);
+        Balance { per_mass: 1.0 / self.mass, centre, inverse }
     }
 }
 
 impl<T: Scalar> AddAssign for RigidBody<T> {
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         self.mass += other.mass;
         self.first_moment += other.first_moment;
@@ -179,81 +208,71 @@ impl<T: Scalar> AddAssign for RigidBody<T> {
 
 /// A rigid system that answers a momentum with the twist that takes it away.
 struct Balance<T> {
-    mass: T,
+    /// Inverse of the mass.
+    per_mass: f64,
     /// Centre of mass.
-    centre: Vector3<T>,
+    centre: Vec3<T>,
     /// Inverse of the inertia about it.
-    inverse: Matrix3<T>,
+    inverse: Sym3<T>,
 }
 
 impl<T: Scalar> Balance<T> {
-    fn angular(&self, momentum: &Momentum<T>) -> Vector3<T> {
-        self.inverse * (self.centre.cross(&momentum.linear) - momentum.angular)
+    #[inline(always)]
+    fn angular(&self, momentum: &Momentum<T>) -> Vec3<T> {
+        self.inverse * (self.centre.cross(momentum.linear) - momentum.angular)
     }
 
+    #[inline(always)]
     fn twist(&self, momentum: &Momentum<T>) -> Twist<T> {
         let angular = self.angular(momentum);
-        Twist { linear: self.centre.cross(&angular) - momentum.linear / self.mass, angular }
+        let linear = self.centre.cross(angular) - momentum.linear.times(self.per_mass);
+        Twist { linear, angular }
     }
-}
-
-/// Inertia of a point mass about the origin, `m (r·r E − r rᵀ)`.
-fn point_inertia<T: Scalar>(mass: T, r: &Vector3<T>) -> Matrix3<T> {
-    (Matrix3::from_diagonal_element(r.dot(r)) - r * r.transpose()) * mass
-}
-
-/// By cofactors; a composite inertia is symmetric and far from singular.
-fn inverse<T: Scalar>(m: &Matrix3<T>) -> Matrix3<T> {
-    let [x, y, z] = [0, 1, 2].map(|i| m.column(i).into_owned());
-    let yz = y.cross(&z);
-    Matrix3::from_columns(&[yz, z.cross(&x), x.cross(&y)]) / x.dot(&yz)
 }
 
 /// `J_bm` of eq. 7 (with the sign the paper drops): the base's twist for unit rate of each joint.
-pub fn base_map<T: Scalar>(robot: &Robot, angles: &[T]) -> Jacobian<T> {
+pub fn base_map(robot: &Robot, angles: &[f64]) -> Jacobian {
     let n = robot.joint_count();
-    let mut rates = vec![T::zero(); n];
+    let mut rates = vec![0.0; n];
     let mut map = Jacobian::zeros(n);
     for (i, mut column) in map.column_iter_mut().enumerate() {
-        rates[i] = T::one();
-        let Twist { linear, angular } = base_twist(robot, angles, &rates);
-        rates[i] = T::zero();
-        let [vx, vy, vz] = linear.into();
-        let [wx, wy, wz] = angular.into();
-        column.copy_from(&Vector6::new(vx, vy, vz, wx, wy, wz));
+        rates[i] = 1.0;
+        let Twist { linear: v, angular: w } = base_twist(robot, angles, &rates);
+        rates[i] = 0.0;
+        column.copy_from(&Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z));
     }
     map
 }
 
 /// `J_g = J_m + J_b J_bm`: the tool's twist for the joint rates while the base floats.
-pub fn generalised_jacobian<T: Scalar>(robot: &Robot, angles: &[T]) -> Jacobian<T> {
+pub fn generalised_jacobian(robot: &Robot, angles: &[f64]) -> Jacobian {
     manipulator_jacobian(robot, angles) + base_jacobian(robot, angles) * base_map(robot, angles)
 }
 
 /// Total linear \[N·s\] and angular momentum about the base's centre of mass \[N·m·s\], term by term
 /// as in eq. 5; zero for the twist that [`base_twist`] gives.
-pub fn total_momentum<T: Scalar>(
+pub fn total_momentum(
     robot: &Robot,
-    angles: &[T],
-    rates: &[T],
-    base: &Twist<T>,
-) -> (Vector3<T>, Vector3<T>) {
-    let velocity = |r: &Vector3<T>| base.linear + base.angular.cross(r);
-    let mut linear = velocity(&Vector3::zeros()) * T::of(robot.base.mass);
-    let mut angular = robot.base.inertia.map(T::of) * base.angular;
+    angles: &[f64],
+    rates: &[f64],
+    base: &Twist<f64>,
+) -> (Vec3<f64>, Vec3<f64>) {
+    let velocity = |r: Vec3<f64>| base.linear + base.angular.cross(r);
+    let mut linear = base.linear * robot.base.mass;
+    let mut angular = Sym3::of(&robot.base.inertia) * base.angular;
     let links: Vec<_> = Outward::new(robot, angles).collect();
     for (i, link) in links.iter().enumerate() {
         let r = link.centre_of_mass;
-        let (mut v, mut w) = (velocity(&r), base.angular);
+        let (mut v, mut w) = (velocity(r), base.angular);
         for (inner, &rate) in links[..=i].iter().zip(rates) {
-            v += (inner.axis * rate).cross(&(r - inner.proximal.position));
+            v += (inner.axis * rate).cross(r - inner.proximal.position);
             w += inner.axis * rate;
         }
         let rotation = link.proximal.rotation;
-        let momentum = v * T::of(link.joint.link.mass);
-        let spin = rotation.transpose() * w;
+        let momentum = v * link.joint.link.mass;
+        let spin = rotation.tr_mul(w);
         linear += momentum;
-        angular += rotation * (link.joint.link.inertia.map(T::of) * spin) + r.cross(&momentum);
+        angular += rotation * (Sym3::of(&link.joint.link.inertia) * spin) + r.cross(momentum);
     }
     (linear, angular)
 }

@@ -1,10 +1,9 @@
 //! First derivatives of the base's angular velocity, in closed form.
 
-use nalgebra::Vector3;
-
 use super::{Link, Momentum, RigidBody, sweep};
 use crate::robot::Robot;
 use crate::scalar::Scalar;
+use crate::vec3::Vec3;
 
 /// The base's angular velocity with its derivatives by every joint's angle and rate.
 ///
@@ -15,20 +14,20 @@ use crate::scalar::Scalar;
 #[derive(Debug, Clone)]
 pub struct RateSlopes<T> {
     /// `ω_b` \[rad/s\].
-    pub angular: Vector3<T>,
+    pub angular: Vec3<T>,
     /// `∂ω_b/∂θ_j` \[1/s\].
-    pub by_angle: Vec<Vector3<T>>,
+    pub by_angle: Vec<Vec3<T>>,
     /// `∂ω_b/∂θ̇_j`: the angular half of `J_bm` (eq. 7).
-    pub by_rate: Vec<Vector3<T>>,
+    pub by_rate: Vec<Vec3<T>>,
     links: Vec<Link<T>>,
 }
 
 impl<T: Scalar> RateSlopes<T> {
     /// Room for the derivatives of one robot.
     pub fn new(robot: &Robot) -> Self {
-        let zeros = vec![Vector3::zeros(); robot.joint_count()];
+        let zeros = vec![Vec3::zero(); robot.joint_count()];
         Self {
-            angular: Vector3::zeros(),
+            angular: Vec3::zero(),
             by_angle: zeros.clone(),
             by_rate: zeros,
             links: Vec::with_capacity(robot.joint_count()),
@@ -36,6 +35,7 @@ impl<T: Scalar> RateSlopes<T> {
     }
 
     /// Evaluates at joint angles \[rad\] and rates \[rad/s\] with zero total momentum.
+    #[inline(always)]
     pub fn evaluate(&mut self, robot: &Robot, angles: &[T], rates: &[T]) {
         self.links.clear();
         let (balance, momentum) = sweep(robot, angles, rates, |link| self.links.push(link));

@@ -2,9 +2,11 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 
+use super::reorientation::Tables;
 use super::{Formulated, Problem, Reorientation};
-use crate::attitude::{net_rotation, net_rotation_curvature, net_rotation_slopes};
-use crate::trajectory::{LocalPeak, Path, Peaks, duration_asked};
+use crate::attitude::{RotationCurvature, RotationSlopes};
+use crate::lanes::{LaneWork, Lanes};
+use crate::trajectory::{LocalPeak, Path, Samples, duration_asked};
 
 /// A cost that is convex in smooth parts: `J(x) = a ‖r(x)‖ + b max_p h_p(x)`.
 pub trait Composite: Problem {
@@ -66,9 +68,11 @@ impl Reorientation {
     /// local peak of rate, acceleration and jerk asks for.
     pub(super) fn linearise(&self, coefficients: &[f64]) -> Linearisation {
         let path = self.family().path(coefficients);
-        let (residual, residual_jacobian) = self.base_error_slopes(&path);
-        let limits = &self.task().limits;
-        let places = Peaks::local(&path, self.accuracy().peak_intervals, limits, NEAR);
+        let mut samples = self.workspace().samples;
+        let slopes =
+            self.width().run(Slopes { problem: self, coefficients, samples: &mut samples });
+        let (residual, residual_jacobian) = self.base_error_slopes(&slopes);
+        let places = samples.local_peaks(&path, &self.task().limits, NEAR);
         let pieces = places.into_iter().map(|place| self.piece(&path, place));
         let (norm_weight, max_weight) = self.weights();
         Linearisation {
@@ -81,10 +85,9 @@ impl Reorientation {
     }
 
     /// The base's error and its derivatives.
-    fn base_error_slopes(&self, path: &Path<'_, f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let net = net_rotation_slopes(&self.task().robot, path, self.accuracy().attitude_steps);
+    fn base_error_slopes(&self, net: &RotationSlopes) -> (DVector<f64>, DMatrix<f64>) {
         let (error, by_turn) = self.turned_error(net.rotation);
-        let jacobian = by_turn * net.by_coefficient;
+        let jacobian = by_turn * &net.by_coefficient;
         let jacobian = DMatrix::from_column_slice(3, jacobian.ncols(), jacobian.as_slice());
         (DVector::from_column_slice(error.imag().as_slice()), jacobian)
     }
@@ -104,7 +107,7 @@ impl Reorientation {
     }
 
     /// The duration that one limit asks for at one place of the path, and its derivatives.
-    fn piece(&self, path: &Path<'_, f64>, place: LocalPeak) -> Piece {
+    fn piece(&self, path: &Path<'_>, place: LocalPeak) -> Piece {
         let LocalPeak { joint: index, order, tau } = place;
         let joint = path.joint(index);
         let derivative = joint.derivatives::<4>(tau)[order];
@@ -119,8 +122,42 @@ impl Reorientation {
     }
 }
 
-/// Midpoint steps along the path for the curvature.
-const CURVATURE_STEPS: usize = 12;
+/// The base's rotation over a path with its derivatives, and the path's samples.
+struct Slopes<'a> {
+    problem: &'a Reorientation,
+    coefficients: &'a [f64],
+    samples: &'a mut Samples,
+}
+
+impl LaneWork for Slopes<'_> {
+    type Output = RotationSlopes;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> RotationSlopes {
+        let (robot, family) = (&self.problem.task().robot, self.problem.family());
+        let Tables { rollout, sampler, .. } = self.problem.tables();
+        sampler.sample::<T>(family, self.coefficients, self.samples);
+        rollout.slopes::<T>(robot, family, self.coefficients)
+    }
+}
+
+/// The second derivative of the base's rotation over a path, times a vector.
+struct Bend<'a> {
+    problem: &'a Reorientation,
+    coefficients: &'a [f64],
+    vector: Vector3<f64>,
+}
+
+impl LaneWork for Bend<'_> {
+    type Output = RotationCurvature;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> RotationCurvature {
+        let (robot, family) = (&self.problem.task().robot, self.problem.family());
+        let Tables { midpoints, .. } = self.problem.tables();
+        midpoints.curvature::<T>(robot, family, self.coefficients, &self.vector)
+    }
+}
 
 /// Second derivatives.
 impl Reorientation {
@@ -130,7 +167,7 @@ impl Reorientation {
         multipliers: &Multipliers,
     ) -> DMatrix<f64> {
         let path = self.family().path(coefficients);
-        let mut curvature = self.base_error_curvature(&path, &multipliers.residual);
+        let mut curvature = self.base_error_curvature(coefficients, &multipliers.residual);
         for (place, lambda) in &multipliers.pieces {
             let terms = path.basis().terms();
             let first = place.joint * terms;
@@ -141,18 +178,18 @@ impl Reorientation {
         curvature
     }
 
-    fn base_error_curvature(&self, path: &Path<'_, f64>, nu: &DVector<f64>) -> DMatrix<f64> {
-        let robot = &self.task().robot;
+    fn base_error_curvature(&self, coefficients: &[f64], nu: &DVector<f64>) -> DMatrix<f64> {
         let nu = Vector3::from_column_slice(nu.as_slice());
-        let (error, by_turn) = self.turned_error(net_rotation(robot, path, CURVATURE_STEPS));
-        let turned = net_rotation_curvature(robot, path, CURVATURE_STEPS, &by_turn.tr_mul(&nu));
+        let (error, by_turn) = self.turned_error(self.net_rotation(coefficients));
+        let turned =
+            self.width().run(Bend { problem: self, coefficients, vector: by_turn.tr_mul(&nu) });
         // The vector part of q ⊗ exp(½ v) is the line along v less |v|²/8 of itself.
         let shrink = -0.25 * nu.dot(&error.imag());
         turned.curvature + turned.by_coefficient.tr_mul(&turned.by_coefficient) * shrink
     }
 
     /// Second derivatives of the duration that one limit asks for, by its joint's coefficients.
-    fn piece_curvature(&self, path: &Path<'_, f64>, place: &LocalPeak) -> DMatrix<f64> {
+    fn piece_curvature(&self, path: &Path<'_>, place: &LocalPeak) -> DMatrix<f64> {
         let LocalPeak { joint: index, order, tau } = *place;
         let joint = path.joint(index);
         let derivatives = joint.derivatives::<6>(tau);

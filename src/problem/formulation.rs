@@ -5,7 +5,10 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Accuracy, Assessment, Bounds, Boxes, Composite, Evaluation, Problem, Reorientation};
+use super::{
+    Accuracy, Assessment, Bounds, Boxes, Composite, Evaluation, Points, Problem, Reorientation,
+    Workspace,
+};
 
 /// The variables in which an optimiser sees the task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -67,12 +70,31 @@ impl Formulated {
 
     /// Coefficients and, where it is a variable, duration \[s\] of a point.
     pub fn decode(&self, x: &[f64]) -> (Vec<f64>, Option<f64>) {
-        let (shape, duration) = x.split_at(self.task.family().dimension());
+        let mut coefficients = vec![0.0; self.task.family().dimension()];
+        let duration = self.write_decoded(x, &mut coefficients);
+        (coefficients, duration)
+    }
+
+    fn write_decoded(&self, x: &[f64], coefficients: &mut [f64]) -> Option<f64> {
+        let (shape, duration) = x.split_at(coefficients.len());
         let duration = duration.first().copied();
         match (self.formulation, duration) {
-            (Formulation::Raw, Some(t)) => (self.task.family().from_alpha(shape, t), duration),
-            _ => (shape.to_vec(), duration),
+            (Formulation::Raw, Some(t)) => {
+                self.task.family().write_from_alpha(shape, t, coefficients);
+            }
+            _ => coefficients.copy_from_slice(shape),
         }
+        duration
+    }
+
+    fn evaluate_in(
+        &self,
+        workspace: &mut Workspace,
+        coefficients: &mut [f64],
+        x: &[f64],
+    ) -> Evaluation {
+        let duration = self.write_decoded(x, coefficients);
+        self.task.evaluate(coefficients, duration, workspace)
     }
 
     /// The motion of a point, evaluated finely: its coefficients and what is known of it.
@@ -101,9 +123,16 @@ impl Problem for Formulated {
     }
 
     fn evaluate(&self, x: &[f64]) -> Evaluation {
-        let (coefficients, duration) = self.decode(x);
-        let assessment = self.task.assess(&coefficients, duration);
-        Evaluation { cost: assessment.cost, violation: assessment.excess.iter().sum() }
+        let mut coefficients = vec![0.0; self.task.family().dimension()];
+        self.evaluate_in(&mut self.task.workspace(), &mut coefficients, x)
+    }
+
+    fn evaluate_batch(&self, points: &Points, each: &mut dyn FnMut(Evaluation)) {
+        let mut workspace = self.task.workspace();
+        let mut coefficients = vec![0.0; self.task.family().dimension()];
+        for x in points {
+            each(self.evaluate_in(&mut workspace, &mut coefficients, x));
+        }
     }
 
     fn composite(&self) -> Option<&dyn Composite> {

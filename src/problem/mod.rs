@@ -15,7 +15,7 @@ pub use composite::{Composite, Linearisation, Multipliers, Piece};
 pub use formulation::{Formulated, Formulation};
 pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};
-pub use reorientation::{Accuracy, Assessment, Reorientation};
+pub use reorientation::{Accuracy, Assessment, Reorientation, Workspace};
 #[cfg(feature = "harness")]
 pub(crate) use settings::DEFAULTS;
 pub use settings::{Boxes, TaskFile, TrajectoryTable};

@@ -206,7 +206,7 @@ fn roll_first(posture: &Posture) -> UnitQuaternion<f64> {
 /// Eq. 9 driven with `R(Q)ᵀ ω_b`: classical Runge–Kutta in `τ`.
 fn transposed_attitude(
     task: &Task,
-    path: &Path<'_, f64>,
+    path: &Path<'_>,
     start: UnitQuaternion<f64>,
 ) -> UnitQuaternion<f64> {
     let width = 1.0 / RUNGE_KUTTA_STEPS as f64;
@@ -214,7 +214,7 @@ fn transposed_attitude(
     let mut rates = angles.clone();
     let mut base_rate = |tau: f64| {
         path.angles_and_rates(tau, &mut angles, &mut rates);
-        base_twist(&task.robot, &angles, &rates).angular
+        Vector3::from(base_twist(&task.robot, &angles, &rates).angular)
     };
     let slope = |q: Quaternion<f64>, omega: Vector3<f64>| {
         let inertial = UnitQuaternion::new_normalize(q).inverse() * omega;
@@ -234,7 +234,7 @@ fn transposed_attitude(
 }
 
 /// The largest values on a grid from zero that stops short of the end \[rad/s, rad/s², rad/s³\].
-fn sampled_peaks(path: &Path<'_, f64>, duration: f64) -> Peaks {
+fn sampled_peaks(path: &Path<'_>, duration: f64) -> Peaks {
     let step = SAMPLE_STEP.max(duration / MOST_SAMPLES);
     let last = (duration / step + 1e-9).floor() as usize;
     let peaks = path.joints().map(|joint| {

@@ -1,13 +1,17 @@
 //! The fitness of the paper (eqs. 18, 20, 25–28, 33): turn the base, soon, within limits.
 
+use std::array::from_fn;
 use std::sync::Arc;
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
-use crate::attitude::net_rotation;
+use super::Evaluation;
+use crate::attitude::{JointState, Midpoints, Rollout};
+use crate::lanes::{LaneWork, Lanes, Width};
+use crate::momentum::Arm;
 use crate::task::Task;
-use crate::trajectory::{Family, Path, Peaks};
+use crate::trajectory::{ArchRoom, Family, Peaks, Sampler, Samples, excess, longest_asked};
 
 /// The base error that counts as one: `k_q = sin(½ · 1°)` (eq. 33; its "δ" is π).
 const K_Q_DEG: f64 = 1.0;
@@ -18,7 +22,7 @@ const K_EXCESS: f64 = 0.01;
 /// How finely a motion is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Accuracy {
-    /// Magnus steps along the path, each with three evaluations of the base's rate.
+    /// Magnus steps along the path, rounded up to threes; each costs two evaluations of the base's rate.
     pub attitude_steps: usize,
     /// Intervals in which peaks of rate, acceleration and jerk are bracketed.
     pub peak_intervals: usize,
@@ -35,6 +39,39 @@ pub struct Reorientation {
     task: Arc<Task>,
     family: Family,
     accuracy: Accuracy,
+    tables: Arc<Tables>,
+    width: Width,
+}
+
+/// All that does not depend on the motion, worked out once.
+#[derive(Debug)]
+pub(super) struct Tables {
+    pub(super) arm: Arm,
+    pub(super) rollout: Rollout,
+    pub(super) sampler: Sampler,
+    pub(super) midpoints: Midpoints,
+}
+
+/// Midpoint steps along the path for the curvature.
+const CURVATURE_STEPS: usize = 12;
+
+impl Tables {
+    fn new(task: &Task, family: &Family, accuracy: Accuracy) -> Arc<Self> {
+        Arc::new(Self {
+            arm: Arm::new(&task.robot),
+            rollout: Rollout::new(family, accuracy.attitude_steps),
+            sampler: Sampler::new(family, accuracy.peak_intervals),
+            midpoints: Midpoints::new(family, CURVATURE_STEPS),
+        })
+    }
+}
+
+/// Room for the evaluation of one motion after the other.
+#[derive(Debug, Clone)]
+pub struct Workspace {
+    pub(super) samples: Samples,
+    joints: Vec<JointState>,
+    arches: ArchRoom,
 }
 
 /// What is known of one motion.
@@ -63,13 +100,27 @@ impl Reorientation {
         assert_eq!(task.limits.0.len(), task.robot.joint_count(), "limits for every joint");
         let ranges: Vec<_> = task.robot.joints.iter().map(|j| j.range).collect();
         let family = Family::new(&ranges, &task.start.joints, &task.goal.joints, terms);
-        Self { task, family, accuracy }
+        let tables = Tables::new(&task, &family, accuracy);
+        Self { task, family, accuracy, tables, width: Width::widest() }
     }
 
     /// The same problem, evaluated more or less finely.
     #[must_use]
     pub fn with_accuracy(&self, accuracy: Accuracy) -> Self {
-        Self { accuracy, ..self.clone() }
+        let tables = Tables::new(&self.task, &self.family, accuracy);
+        Self { accuracy, tables, ..self.clone() }
+    }
+
+    /// The same problem, evaluated with so many lanes, or fewer where the machine has not so many; it
+    /// begins with all that there are. Nothing but time depends on it.
+    #[must_use]
+    pub fn with_width(&self, width: Width) -> Self {
+        Self { width, ..self.clone() }
+    }
+
+    /// The lanes that motions are evaluated with.
+    pub fn width(&self) -> Width {
+        self.width
     }
 
     /// How finely motions are evaluated.
@@ -87,16 +138,35 @@ impl Reorientation {
         &self.family
     }
 
+    pub(super) fn tables(&self) -> &Tables {
+        &self.tables
+    }
+
+    /// Room to evaluate motions in.
+    pub fn workspace(&self) -> Workspace {
+        Workspace {
+            samples: self.tables.sampler.samples(self.family.joints()),
+            joints: Vec::new(),
+            arches: ArchRoom::default(),
+        }
+    }
+
     /// The motion along the path with these coefficients, in `duration` seconds or, without one, in
     /// the shortest time within the limits.
+    ///
+    /// # Panics
+    ///
+    /// Panics when there are more or fewer coefficients than the family's dimension.
     pub fn assess(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment {
-        let path = self.family.path(coefficients);
-        let peaks = Peaks::of(&path, self.accuracy.peak_intervals);
+        self.check(coefficients);
+        let mut workspace = self.workspace();
+        let measure = Measure { problem: self, coefficients, workspace: &mut workspace };
+        let attitude_error = self.width.run(measure);
+        let peaks = workspace.samples.peaks(&self.family.path(coefficients));
         let (duration, excess) = match duration {
             Some(duration) => (duration, peaks.over(duration).excess(&self.task.limits)),
             None => (peaks.shortest_duration(&self.task.limits), [0.0; 3]),
         };
-        let attitude_error = self.base_error(&path).norm();
         Assessment {
             cost: cost(self.task.base_weight, attitude_error, duration, &excess),
             attitude_error,
@@ -106,10 +176,34 @@ impl Reorientation {
         }
     }
 
-    /// `δq_b` of eq. 20 at the end of a path.
-    fn base_error(&self, path: &Path<'_, f64>) -> Vector3<f64> {
-        let net = net_rotation(&self.task.robot, path, self.accuracy.attitude_steps);
-        self.error_after(net).imag()
+    /// The cost of that motion alone: what [`assess`](Self::assess) finds, without the peaks that the
+    /// cost does not follow from.
+    ///
+    /// # Panics
+    ///
+    /// Panics when there are more or fewer coefficients than the family's dimension.
+    pub fn evaluate(
+        &self,
+        coefficients: &[f64],
+        duration: Option<f64>,
+        workspace: &mut Workspace,
+    ) -> Evaluation {
+        self.check(coefficients);
+        let (attitude_error, largest) =
+            self.width.run(Fitness { problem: self, coefficients, duration, workspace });
+        let (duration, excess) = match duration {
+            Some(duration) => {
+                let allowed = powers(duration);
+                (duration, excess(from_fn(|k| largest[k] / allowed[k])))
+            }
+            None => (longest_asked(largest), [0.0; 3]),
+        };
+        let cost = cost(self.task.base_weight, attitude_error, duration, &excess);
+        Evaluation { cost, violation: excess.iter().sum() }
+    }
+
+    fn check(&self, coefficients: &[f64]) {
+        assert_eq!(coefficients.len(), self.family.dimension(), "terms × joints coefficients");
     }
 
     /// The rotation from the goal to where the base ends after it has turned so.
@@ -117,9 +211,90 @@ impl Reorientation {
         self.task.goal.base.inverse() * self.task.start.base * net
     }
 
+    /// The base's rotation over the path with these coefficients.
+    pub fn net_rotation(&self, coefficients: &[f64]) -> UnitQuaternion<f64> {
+        self.width.run(Turn { problem: self, coefficients, joints: &mut Vec::new() })
+    }
+
     /// What `‖δq_b‖` and `t_f` weigh in `J` where no limit is exceeded.
     pub(super) fn weights(&self) -> (f64, f64) {
         weights(self.task.base_weight)
+    }
+}
+
+/// First to third power of a duration: what rate, acceleration and jerk over it are divided by.
+fn powers(duration: f64) -> [f64; 3] {
+    [duration, duration * duration, duration * duration * duration]
+}
+
+/// All that the cost follows from: `‖δq_b‖`, and of each order the largest peak as a multiple of its limit,
+/// where it matters.
+struct Fitness<'a> {
+    problem: &'a Reorientation,
+    coefficients: &'a [f64],
+    duration: Option<f64>,
+    workspace: &'a mut Workspace,
+}
+
+impl LaneWork for Fitness<'_> {
+    type Output = (f64, [f64; 3]);
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> (f64, [f64; 3]) {
+        let Self { problem, coefficients, duration, workspace } = self;
+        let error = Measure { problem, coefficients, workspace }.run::<T>();
+        let Workspace { samples, arches, .. } = workspace;
+        let matters = |known: [f64; 3]| match duration {
+            // Within a limit it does not matter how far.
+            Some(duration) => {
+                let allowed = powers(duration);
+                from_fn(|k| f64::max(known[k], allowed[k]))
+            }
+            None => powers(longest_asked(known)),
+        };
+        let Reorientation { task, family, .. } = problem;
+        let largest =
+            samples.largest_ratio::<T>(&task.limits, matters, family, coefficients, arches);
+        (error, largest)
+    }
+}
+
+/// Samples a path, and finds `‖δq_b‖` of eq. 20 at its end.
+struct Measure<'a> {
+    problem: &'a Reorientation,
+    coefficients: &'a [f64],
+    workspace: &'a mut Workspace,
+}
+
+impl LaneWork for Measure<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> f64 {
+        let Self { problem, coefficients, workspace: Workspace { samples, joints, .. } } = self;
+        problem.tables.sampler.sample::<T>(&problem.family, coefficients, samples);
+        let net = Turn { problem, coefficients, joints }.run::<T>();
+        problem.error_after(net).imag().norm()
+    }
+}
+
+/// The base's rotation over a path.
+struct Turn<'a> {
+    problem: &'a Reorientation,
+    coefficients: &'a [f64],
+    joints: &'a mut Vec<JointState>,
+}
+
+impl LaneWork for Turn<'_> {
+    type Output = UnitQuaternion<f64>;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> UnitQuaternion<f64> {
+        let Reorientation { tables, family, .. } = self.problem;
+        let Tables { arm, rollout, .. } = &**tables;
+        let net = rollout.net_rotation::<T>(arm, family, self.coefficients, self.joints);
+        let mount = UnitQuaternion::from_rotation_matrix(arm.mount());
+        mount * UnitQuaternion::from(net) * mount.inverse()
     }
 }
 

@@ -178,7 +178,7 @@ pub(super) fn check_terms(
 fn default_duration(family: &Family, limits: &Limits, width: f64) -> [f64; 2] {
     let mut coefficients = vec![0.0; family.dimension()];
     coefficients.iter_mut().step_by(family.terms()).for_each(|c| *c = width / 2.0);
-    let typical = Peaks::of(&family.path(&coefficients), 256).shortest_duration(limits);
+    let typical = Peaks::of(family, &coefficients, 256).shortest_duration(limits);
     [typical / 4.0, typical * 1.5]
 }
 

@@ -41,14 +41,29 @@ impl Basis {
 
     /// A bump and its first derivatives by `τ`, at most five.
     pub fn bump<const N: usize>(&self, k: usize, tau: f64) -> [f64; N] {
-        let mut bump = windowed(&self.polynomials[k], 2.0 * tau - 1.0);
-        bump.iter_mut().enumerate().for_each(|(n, value)| *value *= f64::from(1 << n));
-        bump
+        windowed(&self.polynomials[k], tau)
     }
 
     /// All bumps, each with its first derivatives by `τ`.
     pub fn bumps<const N: usize>(&self, tau: f64) -> impl Iterator<Item = [f64; N]> {
         (0..self.terms()).map(move |k| self.bump(k, tau))
+    }
+
+    /// Writes the sum of the bumps' polynomials, each times its coefficient, in powers of `x`.
+    pub(super) fn gather(&self, coefficients: &[f64], powers: &mut [f64]) {
+        powers.fill(0.0);
+        for (polynomial, coefficient) in self.polynomials.iter().zip(coefficients) {
+            for (power, p) in powers.iter_mut().zip(polynomial) {
+                *power += coefficient * p;
+            }
+        }
+    }
+
+    /// Adds the coefficients that make `A` of the power `6 + k`.
+    pub(super) fn add_power(&self, k: usize, a: f64, coefficients: &mut [f64]) {
+        for (coefficient, from) in coefficients.iter_mut().zip(self.from_powers.column(k).iter()) {
+            *coefficient += from * a;
+        }
     }
 
     /// One joint's `A_6, A_7, …` from its coefficients.

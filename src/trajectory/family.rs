@@ -1,8 +1,7 @@
 //! All paths of the sine-polynomial family between two configurations.
 
 use super::basis::Basis;
-use super::path::{Path, Span};
-use crate::scalar::Scalar;
+use super::path::{JointPath, Path, Span};
 
 /// All paths of the family between two configurations.
 ///
@@ -41,6 +40,15 @@ impl Family {
         self.basis.terms()
     }
 
+    /// The bumps that coefficients multiply.
+    pub fn basis(&self) -> &Basis {
+        &self.basis
+    }
+
+    pub(super) fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+
     /// Free coefficients in all.
     pub fn dimension(&self) -> usize {
         self.joints() * self.terms()
@@ -51,18 +59,31 @@ impl Family {
     /// # Panics
     ///
     /// Panics when there are more or fewer coefficients than the family's dimension.
-    pub fn path<T: Scalar>(&self, coefficients: &[T]) -> Path<'_, T> {
+    pub fn path(&self, coefficients: &[f64]) -> Path<'_> {
         assert_eq!(coefficients.len(), self.dimension(), "terms × joints coefficients");
-        let terms = self.terms();
-        let mut free = vec![T::zero(); self.dimension()];
-        for (row, c) in free.chunks_exact_mut(terms).zip(coefficients.chunks_exact(terms)) {
-            for (polynomial, &coefficient) in self.basis.polynomials().iter().zip(c) {
-                for (power, &p) in row.iter_mut().zip(polynomial) {
-                    *power += coefficient * T::of(p);
-                }
-            }
+        let mut free = vec![0.0; self.dimension()];
+        let joints = coefficients.chunks_exact(self.terms());
+        for (powers, joint) in free.chunks_exact_mut(self.terms()).zip(joints) {
+            self.basis.gather(joint, powers);
         }
         Path::new(&self.spans, &self.basis, free)
+    }
+
+    /// One joint's part of that path; `powers` is room for as many numbers as there are terms.
+    pub fn joint_path<'a>(
+        &'a self,
+        joint: usize,
+        coefficients: &[f64],
+        powers: &'a mut [f64],
+    ) -> JointPath<'a> {
+        self.basis.gather(self.of_joint(joint, coefficients), powers);
+        JointPath::new(&self.spans[joint], &self.basis, powers)
+    }
+
+    /// One joint's coefficients among those of all.
+    #[inline(always)]
+    pub fn of_joint<'a>(&self, joint: usize, coefficients: &'a [f64]) -> &'a [f64] {
+        &coefficients[joint * self.terms()..(joint + 1) * self.terms()]
     }
 
     /// The paper's `α_6 … , α_7 …, …` \[s⁻⁶, s⁻⁷, …\], one block a power, one value a joint.
@@ -78,14 +99,20 @@ impl Family {
 
     /// The coefficients of a path given by the paper's `α` and duration \[s\].
     pub fn from_alpha(&self, alpha: &[f64], duration: f64) -> Vec<f64> {
+        let mut coefficients = vec![0.0; self.dimension()];
+        self.write_from_alpha(alpha, duration, &mut coefficients);
+        coefficients
+    }
+
+    /// [`from_alpha`](Self::from_alpha) into a place of one's own.
+    pub fn write_from_alpha(&self, alpha: &[f64], duration: f64, coefficients: &mut [f64]) {
         debug_assert_eq!(alpha.len(), self.dimension());
-        (0..self.joints())
-            .flat_map(|i| {
-                let powers: Vec<f64> = (0..self.terms())
-                    .map(|k| alpha[k * self.joints() + i] * duration.powi(6 + k as i32))
-                    .collect();
-                self.basis.from_powers(&powers)
-            })
-            .collect()
+        coefficients.fill(0.0);
+        for (k, block) in alpha.chunks_exact(self.joints()).enumerate() {
+            let power = duration.powi(6 + k as i32);
+            for (joint, alpha) in coefficients.chunks_exact_mut(self.terms()).zip(block) {
+                self.basis.add_power(k, alpha * power, joint);
+            }
+        }
     }
 }

@@ -6,10 +6,14 @@
 
 mod basis;
 mod family;
+mod grid;
 mod path;
 mod peaks;
+mod samples;
 
 pub use basis::Basis;
 pub use family::Family;
+pub use grid::Grid;
 pub use path::{AtPhase, JointPath, Path};
-pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked};
+pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, excess, longest_asked};
+pub use samples::{ArchRoom, Sampler, Samples};

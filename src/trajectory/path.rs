@@ -28,28 +28,28 @@ impl Span {
 
 /// One path of a family: its shape, free of timing.
 #[derive(Debug, Clone)]
-pub struct Path<'a, T> {
+pub struct Path<'a> {
     spans: &'a [Span],
     basis: &'a Basis,
     /// The polynomials of the free part in powers of `x = 2τ − 1`, one row a joint.
-    free: Vec<T>,
+    free: Vec<f64>,
 }
 
 /// One joint's part of a path.
 #[derive(Debug, Clone, Copy)]
-pub struct JointPath<'a, T> {
+pub struct JointPath<'a> {
     span: &'a Span,
     basis: &'a Basis,
-    free: &'a [T],
+    free: &'a [f64],
 }
 
-impl<'a, T: Scalar> Path<'a, T> {
-    pub(super) fn new(spans: &'a [Span], basis: &'a Basis, free: Vec<T>) -> Self {
+impl<'a> Path<'a> {
+    pub(super) fn new(spans: &'a [Span], basis: &'a Basis, free: Vec<f64>) -> Self {
         Self { spans, basis, free }
     }
 
     /// The joints' parts, from the base outward.
-    pub fn joints(&self) -> impl ExactSizeIterator<Item = JointPath<'_, T>> {
+    pub fn joints(&self) -> impl ExactSizeIterator<Item = JointPath<'_>> {
         let rows = self.free.chunks_exact(self.basis.terms());
         self.spans.iter().zip(rows).map(|(span, free)| JointPath { span, basis: self.basis, free })
     }
@@ -59,7 +59,7 @@ impl<'a, T: Scalar> Path<'a, T> {
     /// # Panics
     ///
     /// Panics when there is no such joint.
-    pub fn joint(&self, index: usize) -> JointPath<'_, T> {
+    pub fn joint(&self, index: usize) -> JointPath<'_> {
         let terms = self.basis.terms();
         let free = &self.free[index * terms..(index + 1) * terms];
         JointPath { span: &self.spans[index], basis: self.basis, free }
@@ -76,7 +76,7 @@ impl<'a, T: Scalar> Path<'a, T> {
     }
 
     /// Writes every joint's angle \[rad\] and its derivative by `τ` \[rad\].
-    pub fn angles_and_rates(&self, tau: f64, angles: &mut [T], rates: &mut [T]) {
+    pub fn angles_and_rates(&self, tau: f64, angles: &mut [f64], rates: &mut [f64]) {
         for ((angle, rate), joint) in angles.iter_mut().zip(rates).zip(self.joints()) {
             let at = joint.at_phase(joint.phase(tau));
             (*angle, *rate) = (at.angle, at.rate);
@@ -97,65 +97,103 @@ pub struct AtPhase<T> {
     pub rate_slope: T,
 }
 
-impl<T: Scalar> JointPath<'_, T> {
+impl Span {
+    /// Angle \[rad\] and its derivative by `τ` at a phase with its derivative (eqs. 11 and 12), and
+    /// how they follow the phase.
+    #[inline(always)]
+    pub(super) fn at_phase<T: Scalar>(&self, [s, s1]: [T; 2]) -> AtPhase<T> {
+        let (sin, cos) = s.sin_cos();
+        let amplitude = T::of(self.amplitude);
+        let angle_slope = amplitude * cos;
+        AtPhase {
+            angle: amplitude.mul_add(sin, T::of(self.centre)),
+            rate: angle_slope * s1,
+            angle_slope,
+            rate_slope: -(amplitude * sin * s1),
+        }
+    }
+
+    /// Rate, acceleration, jerk and one derivative more, by `τ`, where the phase has these derivatives:
+    /// eqs. 12–14, eq. 13 with the square it lacks.
+    #[inline(always)]
+    pub(super) fn rates<T: Scalar>(&self, [s, s1, s2, s3, s4]: [T; 5]) -> [T; 4] {
+        let (sin, cos) = s.sin_cos();
+        let amplitude = T::of(self.amplitude);
+        let (sin, cos) = (amplitude * sin, amplitude * cos);
+        let square = s1 * s1;
+        let twist = s1 * s2;
+        let thrice = twist + twist + twist;
+        let [four, six] = [4.0, 6.0].map(T::of);
+        let bend = s2 * s2;
+        let odd = square.mul_sub_from(s1, s3);
+        let even = (square * s2).mul_sub_from(six, s4);
+        let other = square.mul_sub_from(square, four.mul_add(s1 * s3, bend + bend + bend));
+        [
+            cos * s1,
+            sin.mul_sub_from(square, cos * s2),
+            sin.mul_sub_from(thrice, cos * odd),
+            sin.mul_sub_from(other, cos * even),
+        ]
+    }
+}
+
+impl<'a> JointPath<'a> {
+    pub(super) fn new(span: &'a Span, basis: &'a Basis, free: &'a [f64]) -> Self {
+        Self { span, basis, free }
+    }
+
+    /// Rate, acceleration, jerk and one derivative more \[rad\], by `τ`.
+    pub fn rates(&self, tau: f64) -> [f64; 4] {
+        self.span.rates(phase(self.span, self.free, tau))
+    }
+
     /// Phase and its derivative by `τ` (eq. 24).
-    pub fn phase(&self, tau: f64) -> [T; 2] {
+    pub fn phase(&self, tau: f64) -> [f64; 2] {
         phase(self.span, self.free, tau)
     }
 
-    /// Angle \[rad\] and its derivative by `τ` at a phase with its derivative (eqs. 11 and 12), and
-    /// how they follow the phase.
-    pub fn at_phase(&self, [s, s1]: [T; 2]) -> AtPhase<T> {
-        let (sin, cos) = s.simd_sin_cos();
-        let amplitude = T::of(self.span.amplitude);
-        let angle_slope = amplitude * cos;
-        AtPhase {
-            angle: amplitude * sin + T::of(self.span.centre),
-            rate: angle_slope * s1,
-            angle_slope,
-            rate_slope: -amplitude * sin * s1,
-        }
+    /// Angle and rate at a phase with its derivative, and how they follow the phase.
+    pub fn at_phase(&self, phase: [f64; 2]) -> AtPhase<f64> {
+        self.span.at_phase(phase)
     }
 
     /// Angle \[rad\] and its first derivatives by `τ`, at most five: eqs. 11–14, eq. 13 with the square
     /// it lacks, and two more.
-    pub fn derivatives<const N: usize>(&self, tau: f64) -> [T; N] {
-        let amplitude = T::of(self.span.amplitude);
-        let mut theta = self.sine(tau).0.map(|value| amplitude * value);
-        theta[0] += T::of(self.span.centre);
+    pub fn derivatives<const N: usize>(&self, tau: f64) -> [f64; N] {
+        let mut theta = self.sine(tau).0.map(|value| self.span.amplitude * value);
+        theta[0] += self.span.centre;
         theta
     }
 
     /// Derivative of the `order`-th derivative of the angle by each of the joint's coefficients.
-    pub fn coefficient_slopes(&self, order: usize, tau: f64) -> impl Iterator<Item = T> {
+    pub fn coefficient_slopes(&self, order: usize, tau: f64) -> impl Iterator<Item = f64> {
         let (_, cos) = self.sine::<ORDERS>(tau);
-        let amplitude = T::of(self.span.amplitude);
+        let amplitude = self.span.amplitude;
         let bumps = self.basis.bumps::<ORDERS>(tau);
-        bumps.map(move |bump| amplitude * leibniz(order, &cos, &bump.map(T::of)))
+        bumps.map(move |bump| amplitude * leibniz(order, &cos, &bump))
     }
 
     /// Second derivative of the `order`-th derivative of the angle by any two of the joint's
     /// coefficients.
-    pub fn coefficient_curvature(&self, order: usize, tau: f64) -> impl Fn(usize, usize) -> T {
+    pub fn coefficient_curvature(&self, order: usize, tau: f64) -> impl Fn(usize, usize) -> f64 {
         let (sin, _) = self.sine::<ORDERS>(tau);
         let bumps: Vec<_> = self.basis.bumps::<ORDERS>(tau).collect();
-        let amplitude = T::of(self.span.amplitude);
+        let amplitude = self.span.amplitude;
         move |k, l| {
-            let product: [T; ORDERS] =
-                std::array::from_fn(|n| T::of(leibniz(n, &bumps[k], &bumps[l])));
+            let product: [f64; ORDERS] = std::array::from_fn(|n| leibniz(n, &bumps[k], &bumps[l]));
             -amplitude * leibniz(order, &sin, &product)
         }
     }
 
     /// Sine and cosine of the phase and their first derivatives by `τ`.
-    fn sine<const N: usize>(&self, tau: f64) -> ([T; N], [T; N]) {
-        let s: [T; N] = phase(self.span, self.free, tau);
-        let (mut sin, mut cos) = ([T::zero(); N], [T::zero(); N]);
-        (sin[0], cos[0]) = s[0].simd_sin_cos();
+    fn sine<const N: usize>(&self, tau: f64) -> ([f64; N], [f64; N]) {
+        let s: [f64; N] = phase(self.span, self.free, tau);
+        let (mut sin, mut cos) = ([0.0; N], [0.0; N]);
+        (sin[0], cos[0]) = Scalar::sin_cos(s[0]);
         for n in 1..N {
             // `cos s · s'` and `−sin s · s'`
             for k in 0..n {
-                let slope = s[n - k] * T::of(BINOMIAL[n - 1][k]);
+                let slope = s[n - k] * BINOMIAL[n - 1][k];
                 sin[n] += cos[k] * slope;
                 cos[n] -= sin[k] * slope;
             }
@@ -166,7 +204,18 @@ impl<T: Scalar> JointPath<'_, T> {
 
 /// Phase and its first derivatives by `τ`: the step `σ` scaled to the phase's change, and the window
 /// `(1 − x²)³` times the polynomial of the free part, `x = 2τ − 1`.
-fn phase<T: Scalar, const N: usize>(span: &Span, free: &[T], tau: f64) -> [T; N] {
+fn phase<const N: usize>(span: &Span, free: &[f64], tau: f64) -> [f64; N] {
+    let step: [f64; N] = step(tau);
+    let mut phase = windowed(free, tau);
+    for n in 0..N {
+        let start = if n == 0 { span.start_phase } else { 0.0 };
+        phase[n] += start + span.phase_change * step[n];
+    }
+    phase
+}
+
+/// The step `σ` from 0 to 1 and its first derivatives by `τ`.
+pub(super) fn step<const N: usize>(tau: f64) -> [f64; N] {
     let x = 2.0 * tau - 1.0;
     let (u, xx) = (1.0 - x * x, x * x);
     // Written in `u`, so that what vanishes at both ends vanishes exactly.
@@ -178,14 +227,12 @@ fn phase<T: Scalar, const N: usize>(span: &Span, free: &[T], tau: f64) -> [T; N]
         15.0 / 16.0 * (24.0 * x),
         15.0 / 16.0 * 24.0,
     ];
-    let mut phase = windowed(free, x);
-    for n in 0..N {
-        let start = if n == 0 { span.start_phase } else { 0.0 };
-        phase[n] += T::of(start + span.phase_change * step[n]);
-        // A derivative by τ is twice that by x.
-        phase[n] *= T::of(f64::from(1 << n));
-    }
-    phase
+    std::array::from_fn(|n| step[n] * by_tau(n))
+}
+
+/// What a derivative by `x = 2τ − 1` is multiplied with to be one by `τ`.
+fn by_tau(order: usize) -> f64 {
+    f64::from(1 << order)
 }
 
 /// Values and derivatives: the most there are of anything here.
@@ -202,12 +249,14 @@ const BINOMIAL: [[f64; ORDERS]; ORDERS] = [
 ];
 
 /// The `n`-th derivative of a product from those of its factors, by Leibniz's rule.
-fn leibniz<T: Scalar>(n: usize, a: &[T], b: &[T]) -> T {
-    (0..=n).fold(T::zero(), |sum, k| sum + a[k] * b[n - k] * T::of(BINOMIAL[n][k]))
+fn leibniz(n: usize, a: &[f64], b: &[f64]) -> f64 {
+    (0..=n).map(|k| a[k] * b[n - k] * BINOMIAL[n][k]).sum()
 }
 
-/// The window `(1 − x²)³` times a polynomial in `x`, lowest power first, and first derivatives.
-pub(super) fn windowed<T: Scalar, const N: usize>(polynomial: &[T], x: f64) -> [T; N] {
+/// The window `(1 − x²)³` times a polynomial in `x = 2τ − 1`, lowest power first, and first derivatives
+/// by `τ`.
+pub(super) fn windowed<const N: usize>(polynomial: &[f64], tau: f64) -> [f64; N] {
+    let x = 2.0 * tau - 1.0;
     let (u, xx) = (1.0 - x * x, x * x);
     let window = [
         u * u * u,
@@ -217,14 +266,13 @@ pub(super) fn windowed<T: Scalar, const N: usize>(polynomial: &[T], x: f64) -> [
         72.0 * u - 288.0 * xx,
         -720.0 * x,
     ];
-    let window = window.map(T::of);
-    let factor: [T; N] = taylor(polynomial, T::of(x));
-    std::array::from_fn(|n| leibniz(n, &factor, &window))
+    let factor: [f64; N] = taylor(polynomial, x);
+    std::array::from_fn(|n| leibniz(n, &factor, &window) * by_tau(n))
 }
 
 /// A polynomial, lowest power first, and its first derivatives by Horner's rule.
-fn taylor<T: Scalar, const N: usize>(coefficients: &[T], x: T) -> [T; N] {
-    let mut taylor = [T::zero(); N];
+fn taylor<const N: usize>(coefficients: &[f64], x: f64) -> [f64; N] {
+    let mut taylor = [0.0; N];
     for &coefficient in coefficients.iter().rev() {
         for k in (1..N).rev() {
             taylor[k] = taylor[k] * x + taylor[k - 1];
@@ -234,7 +282,7 @@ fn taylor<T: Scalar, const N: usize>(coefficients: &[T], x: T) -> [T; N] {
     let mut factorial = 1.0;
     for (k, value) in taylor.iter_mut().enumerate().skip(2) {
         factorial *= k as f64;
-        *value *= T::of(factorial);
+        *value *= factorial;
     }
     taylor
 }

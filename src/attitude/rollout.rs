@@ -1,0 +1,211 @@
+//! The base's rotation along the paths of one family, in lanes.
+
+use std::array::from_fn;
+
+use super::{GAUSS, SQRT_15, magnus};
+use crate::lanes::{Block, Lanes, MOST};
+use crate::momentum::{Arm, Outer};
+use crate::scalar::{Pair, Scalar as _};
+use crate::so3::{self, Quat};
+use crate::trajectory::{Family, Grid};
+use crate::vec3::Vec3;
+
+/// Nodes of a panel, at which the base's rate is evaluated.
+pub(super) const NODES: usize = 6;
+
+/// Magnus steps of a panel.
+pub(super) const STEPS: usize = 3;
+
+/// Gauss–Legendre nodes on `[0, 1]` (Abramowitz and Stegun 1964, table 25.4), the first half; the other
+/// mirrors it.
+const NODE_PLACES: [f64; NODES / 2] =
+    [0.033_765_242_898_423_99, 0.169_395_306_766_867_73, 0.380_690_406_958_401_56];
+
+/// Composes the base's rotation along the paths of one family.
+///
+/// The path is cut into equal panels, and a lane holds one of them. In a panel the base's rate is
+/// evaluated at six Gauss–Legendre nodes, which is all that costs; its interpolating polynomial gives the
+/// moments of three sixth-order Magnus steps. Six nodes a panel of three steps are as good as nine, three
+/// for every step.
+#[derive(Debug, Clone)]
+pub struct Rollout {
+    panels: usize,
+    /// For every [`MOST`] panels and each node as many times, those of the panels. A panel beyond the
+    /// last stands still at the path's start.
+    pub(super) grid: Grid<2>,
+    /// `moments[s][k][n]`: what the rate at node `n` adds to the moment `a_k` of step `s`.
+    pub(super) moments: [[[f64; NODES]; 3]; STEPS],
+}
+
+impl Rollout {
+    /// With so many Magnus steps, rounded up to whole panels.
+    pub fn new(family: &Family, steps: usize) -> Self {
+        let panels = steps.div_ceil(STEPS);
+        let places = nodes();
+        let times = (0..panels.next_multiple_of(MOST)).step_by(MOST).flat_map(|first| {
+            places.into_iter().flat_map(move |place| {
+                (first..first + MOST).map(move |panel| {
+                    if panel < panels { (panel as f64 + place) / panels as f64 } else { 0.0 }
+                })
+            })
+        });
+        Self { panels, grid: Grid::new(family, times), moments: moments(&places, panels) }
+    }
+
+    /// The number of evaluations of the base's rate that matter.
+    pub fn nodes(&self) -> usize {
+        self.panels * NODES
+    }
+
+    /// Where in the grid the panels from `first` on have their times of a node.
+    #[inline(always)]
+    pub(super) fn place(first: usize, node: usize) -> usize {
+        (first / MOST * NODES + node) * MOST + first % MOST
+    }
+
+    /// Numbers of the first panel of every group of [`MOST`].
+    #[inline(always)]
+    pub(super) fn groups(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
+        (0..self.panels.next_multiple_of(MOST)).step_by(MOST)
+    }
+
+    /// The rotation of the base over the whole path, from its attitude at the start, **along the mount's
+    /// axes**.
+    ///
+    /// The rotations of panels are multiplied in an order that does not depend on the number of lanes.
+    #[inline(always)]
+    pub fn net_rotation<T: Lanes>(
+        &self,
+        arm: &Arm,
+        family: &Family,
+        coefficients: &[f64],
+        joints: &mut Vec<JointState>,
+    ) -> Quat<f64> {
+        joints.resize(NODES * family.joints(), JointState::default());
+        let mut net = Quat::identity();
+        for group in self.groups() {
+            let mut panels = [Quat::identity(); MOST];
+            for part in (0..MOST).step_by(T::COUNT) {
+                self.drive::<T>(arm, family, coefficients, group + part, joints);
+                let mut rates = [Vec3::zero(); NODES];
+                for (rate, joints) in rates.iter_mut().zip(joints.chunks_exact(family.joints())) {
+                    let mut outer = Outer::nothing();
+                    for (link, state) in arm.links().iter().zip(joints).rev() {
+                        let [sin, cos, rate] = state.load();
+                        outer = link.inward(outer, (sin, cos), rate);
+                    }
+                    *rate = arm.base_rate::<T>(outer);
+                }
+                let mut panel = Quat::identity();
+                for step in &self.moments {
+                    panel = panel.then(so3::exp(magnus(step_moments(step, &rates))));
+                }
+                panel.spread(&mut panels[part..]);
+            }
+            net = net.then(product(panels));
+        }
+        net
+    }
+
+    /// Every joint's state at every node of the panels from `first` on.
+    ///
+    /// Apart from the sweep, since a sine takes long but not much of the processor: many are under way
+    /// at once where nothing waits for the one before.
+    #[inline(always)]
+    fn drive<T: Lanes>(
+        &self,
+        arm: &Arm,
+        family: &Family,
+        coefficients: &[f64],
+        first: usize,
+        joints: &mut [JointState],
+    ) {
+        for (pair, states) in joints.chunks_exact_mut(2 * family.joints()).enumerate() {
+            let (near, far) = states.split_at_mut(family.joints());
+            let places = [2 * pair, 2 * pair + 1].map(|node| Self::place(first, node));
+            for (joint, link) in arm.links().iter().enumerate() {
+                let coefficients = family.of_joint(joint, coefficients);
+                let phases = family.phases::<T, 2>(&self.grid, places, joint, coefficients);
+                let at = family.at_phase(joint, phases);
+                let (sin, cos) = (at.angle + Pair::of(link.offset())).sin_cos();
+                near[joint].store([sin.0, cos.0, at.rate.0]);
+                far[joint].store([sin.1, cos.1, at.rate.1]);
+            }
+        }
+    }
+}
+
+/// Sine and cosine of one joint's angle with its DH offset, and its rate by `τ` \[rad\], one time a lane.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct JointState([Block; 3]);
+
+impl JointState {
+    #[inline(always)]
+    fn load<T: Lanes>(&self) -> [T; 3] {
+        let [a, b, c] = &self.0;
+        [T::load(&a.0), T::load(&b.0), T::load(&c.0)]
+    }
+
+    #[inline(always)]
+    fn store<T: Lanes>(&mut self, [x, y, z]: [T; 3]) {
+        let [a, b, c] = &mut self.0;
+        x.store(&mut a.0);
+        y.store(&mut b.0);
+        z.store(&mut c.0);
+    }
+}
+
+/// All nodes of a panel, in order, in its widths.
+fn nodes() -> [f64; NODES] {
+    from_fn(|n| if n < NODES / 2 { NODE_PLACES[n] } else { 1.0 - NODE_PLACES[NODES - 1 - n] })
+}
+
+/// Each step's moments from the rates at a panel's nodes.
+///
+/// Three Gauss nodes of a step determine its moments; there the interpolating polynomial is evaluated
+/// in Lagrange's form.
+fn moments(nodes: &[f64; NODES], panels: usize) -> [[[f64; NODES]; 3]; STEPS] {
+    let width = 1.0 / (panels * STEPS) as f64;
+    from_fn(|step| {
+        let mut moments = [[0.0; NODES]; 3];
+        for n in 0..NODES {
+            let at = |place: f64| -> f64 {
+                let others = (0..NODES).filter(|&m| m != n);
+                others.map(|m| (place - nodes[m]) / (nodes[n] - nodes[m])).product()
+            };
+            let [w1, w2, w3] = GAUSS.map(|gauss| width * at((step as f64 + gauss) / STEPS as f64));
+            moments[0][n] = w2;
+            moments[1][n] = (w3 - w1) * (SQRT_15 / 3.0);
+            moments[2][n] = (w3 - w2 * 2.0 + w1) * (10.0 / 3.0);
+        }
+        moments
+    })
+}
+
+/// The moments of one step.
+#[inline(always)]
+pub(super) fn step_moments<T: Lanes>(
+    step: &[[f64; NODES]; 3],
+    rates: &[Vec3<T>; NODES],
+) -> [Vec3<T>; 3] {
+    let mut moments = [Vec3::zero(); 3];
+    for (moment, weights) in moments.iter_mut().zip(step) {
+        for n in 0..NODES {
+            *moment = rates[n].mul_add(T::of(weights[n]), *moment);
+        }
+    }
+    moments
+}
+
+/// The product of all, by pairs.
+#[inline(always)]
+fn product(mut q: [Quat<f64>; MOST]) -> Quat<f64> {
+    let mut count = MOST;
+    while count > 1 {
+        count /= 2;
+        for i in 0..count {
+            q[i] = q[2 * i].then(q[2 * i + 1]);
+        }
+    }
+    q[0]
+}

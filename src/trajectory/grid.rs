@@ -1,0 +1,132 @@
+//! A family's phases at fixed times, in lanes.
+
+use super::family::Family;
+use super::path::{AtPhase, step};
+use crate::lanes::{Block, Lanes, MOST};
+use crate::scalar::{Pair, Scalar};
+
+/// Step and bumps of a family at fixed times, with their first `N − 1` derivatives by `τ`: all of a phase
+/// that coefficients do not change, tabulated once.
+#[derive(Debug, Clone)]
+pub struct Grid<const N: usize> {
+    /// The number of times by the most lanes there are.
+    blocks: usize,
+    /// For [`MOST`] times after the other: step, then every bump, `N` blocks each.
+    table: Vec<Block>,
+}
+
+impl<const N: usize> Grid<N> {
+    /// At these times; filled up with the last to a number that lanes divide in pairs.
+    pub fn new(family: &Family, times: impl IntoIterator<Item = f64>) -> Self {
+        let mut times: Vec<f64> = times.into_iter().collect();
+        if let Some(&last) = times.last() {
+            times.resize(times.len().next_multiple_of(2 * MOST), last);
+        }
+        let blocks = times.len() / MOST;
+        let rows = N * (family.terms() + 1);
+        let mut table = vec![Block::default(); blocks * rows];
+        for (t, &tau) in times.iter().enumerate() {
+            let parts = std::iter::once(step(tau)).chain(family.basis().bumps(tau));
+            for (row, value) in parts.flat_map(|part: [f64; N]| part).enumerate() {
+                table[t / MOST * rows + row].0[t % MOST] = value;
+            }
+        }
+        Self { blocks, table }
+    }
+
+    /// The number of times, those it was filled up with among them.
+    pub fn len(&self) -> usize {
+        self.blocks * MOST
+    }
+
+    /// Whether there is no time at all.
+    pub fn is_empty(&self) -> bool {
+        self.table.is_empty()
+    }
+
+    /// The table's blocks from time `first` on.
+    #[inline(always)]
+    fn blocks(&self, first: usize) -> std::slice::ChunksExact<'_, Block> {
+        let rows = self.table.len() / self.blocks;
+        self.table[first / MOST * rows..].chunks_exact(N)
+    }
+
+    /// What one part, 0 for the step and `k + 1` for bump `k`, and its derivatives are from time `first`
+    /// on, one time a lane.
+    #[inline(always)]
+    pub fn part<T: Lanes>(&self, part: usize, first: usize) -> [T; N] {
+        let rows = self.table.len() / self.blocks;
+        let row = first / MOST * rows + part * N;
+        load(&self.table[row..row + N], first)
+    }
+}
+
+#[inline(always)]
+fn load<T: Lanes, const N: usize>(blocks: &[Block], first: usize) -> [T; N] {
+    let mut numbers = [T::of(0.0); N];
+    for (number, block) in numbers.iter_mut().zip(blocks) {
+        *number = T::load(&block.0[first % MOST..]);
+    }
+    numbers
+}
+
+impl Family {
+    /// One joint's phase and its derivatives from time `first` on, for the joint's coefficients.
+    #[inline(always)]
+    pub fn phase<T: Lanes, const N: usize>(
+        &self,
+        grid: &Grid<N>,
+        first: usize,
+        joint: usize,
+        coefficients: &[f64],
+    ) -> [T; N] {
+        let span = &self.spans()[joint];
+        let mut parts = grid.blocks(first);
+        let mut phase = [T::of(0.0); N];
+        if let Some(step) = parts.next() {
+            phase = load::<T, N>(step, first);
+        }
+        for part in &mut phase {
+            *part = *part * T::of(span.phase_change);
+        }
+        phase[0] += T::of(span.start_phase);
+        for (&coefficient, bump) in coefficients.iter().zip(parts) {
+            let bump = load::<T, N>(bump, first);
+            for n in 0..N {
+                phase[n] = bump[n].mul_add(T::of(coefficient), phase[n]);
+            }
+        }
+        phase
+    }
+
+    /// The same at two places at once.
+    #[inline(always)]
+    pub fn phases<T: Lanes, const N: usize>(
+        &self,
+        grid: &Grid<N>,
+        [near, far]: [usize; 2],
+        joint: usize,
+        coefficients: &[f64],
+    ) -> [Pair<T>; N] {
+        let near = self.phase::<T, N>(grid, near, joint, coefficients);
+        let far = self.phase::<T, N>(grid, far, joint, coefficients);
+        let mut phases = [Pair::of(0.0); N];
+        for n in 0..N {
+            phases[n] = Pair(near[n], far[n]);
+        }
+        phases
+    }
+
+    /// A joint's angle and rate at a phase with its derivative, and how they follow it.
+    #[inline(always)]
+    pub fn at_phase<T: Scalar>(&self, joint: usize, phase: [T; 2]) -> AtPhase<T> {
+        self.spans()[joint].at_phase(phase)
+    }
+
+    /// A joint's rate, acceleration, jerk and one derivative more, by `τ`, where its phase has these
+    /// derivatives.
+    #[inline(always)]
+    pub fn rates<T: Scalar>(&self, joint: usize, phase: [T; 5]) -> [T; 4] {
+        self.spans()[joint].rates(phase)
+    }
+}
