@@ -90,7 +90,7 @@ fn plan(mood: Mood, always: bool, budget: u64) -> (Plan, Arc<Fickle>) {
     (plan, problem)
 }
 
-const COLUMNS: [&str; 38] = [
+const COLUMNS: [&str; 39] = [
     "format",
     "key",
     "recipe",
@@ -106,6 +106,7 @@ const COLUMNS: [&str; 38] = [
     "acceleration_limit_deg_s2",
     "jerk_limit_deg_s3",
     "terms",
+    "lanes",
     "targets",
     "seed",
     "budget",

@@ -7,7 +7,7 @@ use driftless::input::Document;
 use driftless::lanes::Width;
 use driftless::momentum::{Arm, Outer, RateSlopes, base_map, base_twist, total_momentum};
 use driftless::problem::{
-    Accuracy, Boxes, Formulated, Formulation, Problem, Reorientation, TaskFile,
+    Accuracy, Boxes, Evaluation, Formulated, Formulation, Points, Problem, Reorientation, TaskFile,
 };
 use driftless::robot::Robot;
 use driftless::trajectory::Peaks;
@@ -208,6 +208,41 @@ proptest! {
                 }
             }
             prop_assert!(fused.windows(2).all(|pair| pair[0] == pair[1]), "{fused:x?}");
+        }
+    }
+
+    /// A point's cost is the same to the last bit alone and in any company.
+    #[test]
+    fn the_cost_does_not_depend_on_the_batch(
+        unit in prop::collection::vec(-1.0..1.0, 12 * 13),
+        turned in 0_usize..12,
+    ) {
+        let (problem, boxes) = paper();
+        let problem = std::sync::Arc::new(problem);
+        for formulation in Formulation::ALL {
+            let problem = Formulated::new(formulation, problem.clone(), &boxes);
+            let bits = |e: Evaluation| [e.cost, e.violation].map(f64::to_bits);
+            let mut points = Points::zeros(problem.bounds().len(), 12);
+            for (x, unit) in points.iter_mut().zip(unit.chunks_exact(13)) {
+                let bounds = problem.bounds().iter();
+                for ((x, unit), [lower, upper]) in x.iter_mut().zip(unit).zip(bounds) {
+                    *x = f64::midpoint(lower, upper) + unit * (upper - lower) / 2.0;
+                }
+            }
+            let mut other = points.clone();
+            for (i, x) in points.iter().enumerate() {
+                other[(i + turned) % 12].copy_from_slice(x);
+            }
+            let batch = |points: &Points| {
+                let mut found = Vec::new();
+                problem.evaluate_batch(points, &mut |e| found.push(bits(e)));
+                found
+            };
+            let alone: Vec<_> = points.iter().map(|x| bits(problem.evaluate(x))).collect();
+            prop_assert_eq!(&batch(&points), &alone);
+            let mut found = batch(&other);
+            found.rotate_left(turned);
+            prop_assert_eq!(found, alone);
         }
     }
 

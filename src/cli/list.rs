@@ -4,6 +4,7 @@ use clap::Args;
 use schemars::schema_for;
 
 use super::CliError;
+use crate::lanes::Width;
 use crate::optimiser::Settings;
 use crate::problem::{Boxes, Formulated, Formulation, Problem as _, TaskFile, TestFunction};
 use crate::robot::Robot;
@@ -25,6 +26,12 @@ impl List {
         }
         problems()?;
         functions()?;
+        let width = Width::widest();
+        say!(
+            "\nthis processor evaluates {} places of a path at once ({})",
+            width.lanes(),
+            width.name()
+        );
         say!("\nrobots that come with the program");
         for name in Robot::embedded_names() {
             if let Some(document) = Robot::embedded(name) {

@@ -59,6 +59,7 @@ struct PlanJson<'a> {
     linearisations: u64,
     curvatures: u64,
     conic_solves: u64,
+    lanes: usize,
     seconds: f64,
 }
 
@@ -185,6 +186,7 @@ impl Plan {
             linearisations: found.linearisations,
             curvatures: found.curvatures,
             conic_solves: found.conic_solves,
+            lanes: found.problem.task().width().lanes(),
             seconds: found.seconds,
         };
         serde_json::to_string_pretty(&json).unwrap_or_default()

@@ -87,7 +87,7 @@ pub(super) struct Ended<'a> {
 }
 
 /// Version of the stored tables; raised when a column changes.
-pub(super) const FORMAT: u64 = 3;
+pub(super) const FORMAT: u64 = 4;
 
 impl Record {
     pub(super) fn new(plan: &Plan, run: &RunSpec, ended: Ended<'_>) -> PolarsResult<Self> {
@@ -149,6 +149,7 @@ fn row(
         "acceleration_limit_deg_s2" => [limit(1)],
         "jerk_limit_deg_s3" => [limit(2)],
         "terms" => [problem.map(|problem| problem.family().terms() as u64)],
+        "lanes" => [problem.map(|problem| problem.width().lanes() as u64)],
         "targets" => list(Some(&instance.targets)),
         "seed" => [run.seed],
         "budget" => [run.budget],

@@ -3,7 +3,7 @@
 use super::family::Family;
 use super::grid::Grid;
 use super::path::{JointPath, Path};
-use super::peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked};
+use super::peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, longest_asked};
 use crate::lanes::{Lanes, MOST};
 use crate::scalar::{Pair, Scalar};
 
@@ -150,12 +150,7 @@ impl Samples {
         coefficients: &[f64],
         room: &mut ArchRoom,
     ) -> [f64; 3] {
-        let mut known = [0.0; 3];
-        for (largest, limit) in self.largest.iter().zip(&limits.0) {
-            for k in 0..3 {
-                known[k] = f64::max(known[k], largest[k] / limit[k]);
-            }
-        }
+        let mut known = self.sampled_ratio(limits);
         let mut floor = matters(known);
         let ArchRoom { arches, powers } = room;
         arches.clear();
@@ -184,13 +179,30 @@ impl Samples {
         known
     }
 
+    /// Of each order the largest sample as a multiple of its limit.
+    #[inline(always)]
+    fn sampled_ratio(&self, limits: &Limits) -> [f64; 3] {
+        let mut ratio = [0.0; 3];
+        for (largest, limit) in self.largest.iter().zip(&limits.0) {
+            for k in 0..3 {
+                ratio[k] = f64::max(ratio[k], largest[k] / limit[k]);
+            }
+        }
+        ratio
+    }
+
     /// All local maxima that ask for a duration not below `share` of the longest asked for.
     pub fn local_peaks(&self, path: &Path<'_>, limits: &Limits, share: f64) -> Vec<LocalPeak> {
         let mut asked: Vec<(LocalPeak, f64)> = Vec::new();
+        let least = share * longest_asked(self.sampled_ratio(limits));
         for (joint, part) in path.joints().enumerate() {
             for order in 1..=3 {
                 let limit = limits.0[joint][order - 1];
-                asked.extend(self.row(joint, order).local_peaks(&part).map(|peak| {
+                let floor = limit * least.powi(order as i32);
+                if self.bounds[joint][order - 1] < floor {
+                    continue;
+                }
+                asked.extend(self.row(joint, order).local_peaks(&part, floor).map(|peak| {
                     let place = LocalPeak { joint, order, tau: peak.tau };
                     (place, duration_asked(peak.value / limit, order))
                 }));
@@ -229,16 +241,19 @@ impl Row<'_> {
         best
     }
 
-    /// The local maxima of the magnitude: those of arches between two samples, and samples, the ends
-    /// among them, that no neighbour exceeds.
-    fn local_peaks(self, joint: &JointPath<'_>) -> impl Iterator<Item = Peak> {
+    /// The local maxima of the magnitude that may reach a floor: those of arches between two samples,
+    /// and samples, the ends among them, that no neighbour exceeds.
+    fn local_peaks(self, joint: &JointPath<'_>, floor: f64) -> impl Iterator<Item = Peak> {
         let last = self.intervals;
-        let arches = (0..last).filter(move |&i| self.arch_bound(i) > 0.0);
+        let arches = (0..last).filter(move |&i| {
+            let bound = self.arch_bound(i);
+            bound > 0.0 && bound >= floor
+        });
         let arches = arches.map(move |i| self.refine(joint, i, PLACE, 0.0));
         // Which way the magnitude goes at a sample.
         let slope = move |i: usize| self.values[i] * self.slopes[i];
         let size = move |i: usize| self.values[i].abs();
-        let tops = (0..=last).filter(move |&i| {
+        let tops = (0..=last).filter(move |&i| size(i) >= floor).filter(move |&i| {
             let falls_before = i == 0 || slope(i) >= 0.0 && size(i) >= size(i - 1);
             let falls_after = i == last || slope(i) <= 0.0 && size(i) >= size(i + 1);
             falls_before && falls_after

@@ -1,0 +1,257 @@
+//! The table of `docs/performance.md`: `cargo bench --bench speed`.
+//!
+//! Where others use the machine too, times vary by half and more. So all lines are measured in turns, in one
+//! process on one thread, and each is the median of its turns; what compares two lines is the median of the
+//! turns' quotients.
+
+use std::fmt::{Display, Write as _};
+use std::hint::black_box;
+use std::sync::Arc;
+use std::time::Instant;
+
+use driftless::lanes::Width;
+use driftless::optimiser::{De, Optimiser, Pso, RandomSearch, Scp};
+use driftless::oracle::{Oracle, Rng, Watch};
+use driftless::problem::{
+    Bounds, Boxes, Composite, Evaluation, Formulated, Formulation, Multipliers, Points, Problem,
+    Reorientation, TaskFile,
+};
+use nalgebra::DVector;
+
+/// How often each line is measured.
+const TURNS: usize = 15;
+
+/// The paper's budget.
+const BUDGET: u64 = 150_000;
+
+/// The best known cost of the paper's task, to six digits: 0.781850.
+const TARGET: f64 = 0.781_850;
+
+struct Paper {
+    problem: Reorientation,
+    boxes: Boxes,
+}
+
+impl Paper {
+    fn new() -> Self {
+        let document = TaskFile::paper();
+        let built = TaskFile::read(&document).and_then(|file| file.build(&document));
+        let (problem, boxes) = built.expect("the default task");
+        Self { problem, boxes }
+    }
+
+    fn formulated(&self, formulation: Formulation, width: Width) -> Formulated {
+        Formulated::new(formulation, Arc::new(self.problem.with_width(width)), &self.boxes)
+    }
+}
+
+/// Microseconds that one of `count` takes.
+fn microseconds(count: usize, mut work: impl FnMut()) -> f64 {
+    let clock = Instant::now();
+    work();
+    clock.elapsed().as_secs_f64() * 1e6 / count as f64
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// One line of a table, measured anew at each turn.
+struct Line<'a> {
+    name: String,
+    measure: Box<dyn FnMut() -> f64 + 'a>,
+    turns: Vec<f64>,
+}
+
+impl<'a> Line<'a> {
+    fn new(name: impl Display, measure: impl FnMut() -> f64 + 'a) -> Self {
+        Self { name: name.to_string(), measure: Box::new(measure), turns: Vec::new() }
+    }
+
+    fn median(&self) -> f64 {
+        median(self.turns.clone())
+    }
+
+    /// How many times as long another line takes.
+    fn shorter_than(&self, other: &Self) -> f64 {
+        median(other.turns.iter().zip(&self.turns).map(|(other, own)| other / own).collect())
+    }
+}
+
+fn take_turns(lines: &mut [Line<'_>]) {
+    for _ in 0..TURNS {
+        for line in &mut *lines {
+            line.turns.push((line.measure)());
+        }
+    }
+}
+
+/// Points drawn uniformly from the box shrunk to this share.
+fn points(problem: &dyn Problem, count: usize, share: f64) -> Points {
+    let mut rng = Rng::new(7);
+    let mut points = Points::zeros(problem.bounds().len(), count);
+    for x in &mut points {
+        for (x, [lower, upper]) in x.iter_mut().zip(problem.bounds().iter()) {
+            *x = f64::midpoint(lower, upper)
+                + share * rng.uniform(lower - upper, upper - lower) / 2.0;
+        }
+    }
+    points
+}
+
+/// Evaluation and derivatives, with every number of lanes.
+fn evaluations(paper: &Paper) {
+    const COUNT: usize = 1000;
+    let widths: Vec<Width> = Width::available().collect();
+    let problems: Vec<_> =
+        widths.iter().map(|&width| paper.formulated(Formulation::TimeFree, width)).collect();
+    let all = points(&problems[0], COUNT, 1.0);
+    let some = points(&problems[0], COUNT / 10, 0.5);
+    let multipliers: Vec<_> = some.iter().map(|x| multipliers(&problems[0], x)).collect();
+
+    let mut lines = Vec::new();
+    for problem in &problems {
+        lines.push(Line::new("fitness with limits", || {
+            let mut sum = 0.0;
+            let time = microseconds(COUNT, || {
+                problem.evaluate_batch(&all, &mut |evaluation| sum += evaluation.cost);
+            });
+            black_box(sum);
+            time
+        }));
+    }
+    for problem in &problems {
+        lines.push(Line::new("rollout of the attitude alone", || {
+            microseconds(COUNT, || {
+                for x in &all {
+                    black_box(problem.task().net_rotation(black_box(x)));
+                }
+            })
+        }));
+    }
+    for problem in &problems {
+        lines.push(Line::new("first derivatives", || {
+            microseconds(some.len(), || {
+                for x in &some {
+                    black_box(problem.linearise(black_box(x)));
+                }
+            })
+        }));
+    }
+    for problem in &problems {
+        lines.push(Line::new("second derivatives", || {
+            microseconds(some.len(), || {
+                for (x, multipliers) in some.iter().zip(&multipliers) {
+                    black_box(problem.curvature(black_box(x), multipliers));
+                }
+            })
+        }));
+    }
+    take_turns(&mut lines);
+
+    let columns = widths.iter().map(|width| format!(" {} |", width.name()));
+    println!("| microseconds for one |{}", columns.collect::<String>());
+    println!("|---|{}", "---|".repeat(widths.len()));
+    for group in lines.chunks(widths.len()) {
+        let mut row = format!("| {} | {:.2} |", group[0].name, group[0].median());
+        for line in &group[1..] {
+            let _ = write!(row, " {:.2} ({:.1}×) |", line.median(), line.shorter_than(&group[0]));
+        }
+        println!("{row}");
+    }
+    println!();
+}
+
+fn multipliers(problem: &Formulated, x: &[f64]) -> Multipliers {
+    let pieces = problem.linearise(x).pieces;
+    Multipliers {
+        residual: DVector::from_element(3, 1.0),
+        pieces: pieces.iter().take(8).map(|piece| (piece.place, 0.1)).collect(),
+    }
+}
+
+/// A problem that costs no time, in the box of another: what a run on it takes is the optimiser's.
+struct Free<'a>(&'a Bounds);
+
+impl Problem for Free<'_> {
+    fn bounds(&self) -> &Bounds {
+        self.0
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Evaluation {
+        Evaluation { cost: x[0], violation: 0.0 }
+    }
+}
+
+/// Seconds that the paper's budget takes.
+fn seconds(optimiser: &dyn Optimiser, problem: &dyn Problem, seed: u64) -> f64 {
+    let watch = Watch::default();
+    let mut oracle = Oracle::new(problem, BUDGET, &watch);
+    let clock = Instant::now();
+    let _ = optimiser.minimise(&mut oracle, &mut Rng::new(seed));
+    clock.elapsed().as_secs_f64()
+}
+
+/// Whole runs, and the same with a problem that costs nothing.
+fn runs(paper: &Paper) {
+    let problem = paper.formulated(Formulation::TimeFree, Width::widest());
+    let free = Free(problem.bounds());
+    let optimisers: [(&str, &dyn Optimiser); 3] =
+        [("pso", &Pso::default()), ("de", &De::default()), ("random", &RandomSearch::default())];
+    println!(
+        "| {BUDGET} evaluations | seconds | the optimiser's own, as a share of the problem's |"
+    );
+    println!("|---|---|---|");
+    let mut all = vec![Vec::new(); optimisers.len()];
+    for seed in 1..=TURNS as u64 {
+        for ((_, optimiser), turns) in optimisers.iter().zip(&mut all) {
+            let whole = seconds(*optimiser, &problem, seed);
+            let own = seconds(*optimiser, &free, seed);
+            turns.push([whole, own / (whole - own)]);
+        }
+    }
+    for ((name, _), turns) in optimisers.iter().zip(&all) {
+        let [whole, share] = [0, 1].map(|k| median(turns.iter().map(|turn| turn[k]).collect()));
+        println!("| `{name}` | {whole:.3} | {:.1} % |", 100.0 * share);
+    }
+    println!();
+}
+
+/// `scp`: the time of a start, and until a motion as good as the best known is found.
+fn convex(paper: &Paper) {
+    const SEEDS: u64 = 100;
+    let problem = paper.formulated(Formulation::TimeFree, Width::widest());
+    let mut each = Vec::new();
+    let mut until = Vec::new();
+    for seed in 1..=SEEDS {
+        let watch = Watch::default();
+        let mut oracle = Oracle::new(&problem, u64::MAX, &watch);
+        let mut rng = Rng::new(seed);
+        let clock = Instant::now();
+        loop {
+            let start = Scp::start(problem.bounds(), &mut rng);
+            let began = Instant::now();
+            let _ = Scp::default().follow(&mut oracle, &start);
+            each.push(began.elapsed().as_secs_f64() * 1e3);
+            let best = oracle.best().map(|best| problem.certify(&best.x).1.cost);
+            if best.is_some_and(|cost| cost <= TARGET) {
+                break;
+            }
+        }
+        until.push(clock.elapsed().as_secs_f64() * 1e3);
+    }
+    let worst = until.iter().copied().fold(0.0, f64::max);
+    println!("| `scp`, {SEEDS} seeds | milliseconds |");
+    println!("|---|---|");
+    println!("| one start, median of {} | {:.2} |", each.len(), median(each.clone()));
+    println!("| starts until J ≤ 0.781850, median | {:.2} |", median(until));
+    println!("| starts until J ≤ 0.781850, worst | {worst:.1} |");
+}
+
+fn main() {
+    let paper = Paper::new();
+    evaluations(&paper);
+    runs(&paper);
+    convex(&paper);
+}
