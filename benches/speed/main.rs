@@ -4,6 +4,8 @@
 //! process on one thread, and each is the median of its turns; what compares two lines is the median of the
 //! turns' quotients.
 
+mod operations;
+
 use std::fmt::{Display, Write as _};
 use std::hint::black_box;
 use std::sync::Arc;
@@ -13,10 +15,11 @@ use driftless::lanes::Width;
 use driftless::optimiser::{De, Optimiser, Pso, RandomSearch, Scp};
 use driftless::oracle::{Oracle, Rng, Watch};
 use driftless::problem::{
-    Bounds, Boxes, Composite, Evaluation, Formulated, Formulation, Multipliers, Points, Problem,
-    Reorientation, TaskFile,
+    Accuracy, BestKnown, Bounds, Boxes, Composite, Evaluation, Formulated, Formulation,
+    Multipliers, Points, Problem, Reorientation, TaskFile,
 };
-use nalgebra::DVector;
+use nalgebra::{DVector, UnitQuaternion};
+use operations::{Operations, Peak};
 
 /// How often each line is measured.
 const TURNS: usize = 15;
@@ -246,12 +249,109 @@ fn convex(paper: &Paper) {
     println!("|---|---|");
     println!("| one start, median of {} | {:.2} |", each.len(), median(each.clone()));
     println!("| starts until J ≤ 0.781850, median | {:.2} |", median(until));
-    println!("| starts until J ≤ 0.781850, worst | {worst:.1} |");
+    println!("| starts until J ≤ 0.781850, worst | {worst:.1} |\n");
+}
+
+/// What the arithmetic alone takes.
+fn bound(paper: &Paper) {
+    let peak = Peak::of(Width::widest());
+    println!("| one evaluation | products | sums | others | quotients | at the processor's peak |");
+    println!("|---|---|---|---|---|---|");
+    let mut all = 0.0;
+    for (name, counted) in operations::of_an_evaluation(&paper.problem) {
+        let Operations { products, sums, bits, quotients } = counted;
+        let microseconds = peak.bound(counted) / 1e3;
+        all += microseconds;
+        println!("| {name} | {products} | {sums} | {bits} | {quotients} | {microseconds:.2} µs |");
+    }
+    println!("| both | | | | | {all:.2} µs |\n");
+}
+
+/// What finer and coarser settings cost, and by how much they miss.
+fn accuracies(paper: &Paper) {
+    const COUNT: usize = 300;
+    let problem = &paper.problem;
+    let points = |share: f64| {
+        points(&paper.formulated(Formulation::TimeFree, Width::widest()), COUNT, share)
+    };
+    let (all, inner) = (points(1.0), points(0.5));
+    let best = BestKnown::of(problem).map(|known| known.coefficients.concat()).unwrap_or_default();
+    let fine = problem.with_accuracy(Accuracy::FINE);
+    let turns = |problem: &Reorientation, points: &Points| -> Vec<_> {
+        points.iter().map(|x| problem.net_rotation(x)).collect()
+    };
+    let [exact, exact_inner] = [&all, &inner].map(|points| turns(&fine, points));
+    println!(
+        "| `attitude_steps` | nodes | rollout | error in the box, median, worst | in its inner half | change of J of the best motion |"
+    );
+    println!("|---|---|---|---|---|---|");
+    for steps in [12, 18, 24, 36, 48, 96] {
+        let accuracy = Accuracy { attitude_steps: steps, ..problem.accuracy() };
+        let problem = problem.with_accuracy(accuracy);
+        let errors = |points: &Points, exact: &[UnitQuaternion<f64>]| {
+            let found = turns(&problem, points);
+            let errors = found.iter().zip(exact).map(|(q, exact)| (q.coords - exact.coords).norm());
+            let errors: Vec<f64> = errors.collect();
+            let worst = errors.iter().copied().fold(0.0, f64::max);
+            format!("{:.0e}, {worst:.0e}", median(errors))
+        };
+        let time = median(
+            (0..TURNS)
+                .map(|_| microseconds(COUNT, || drop(black_box(turns(&problem, &all)))))
+                .collect(),
+        );
+        let change = |accuracy| {
+            let problem = fine.with_accuracy(accuracy);
+            problem.assess(&best, None).cost - fine.assess(&best, None).cost
+        };
+        let only = Accuracy { attitude_steps: steps, ..Accuracy::FINE };
+        println!(
+            "| {steps} | {} | {time:.2} µs | {} | {} | {:.0e} |",
+            2 * steps.next_multiple_of(3),
+            errors(&all, &exact),
+            errors(&inner, &exact_inner),
+            change(only).abs()
+        );
+    }
+    println!();
+
+    println!("| `peak_intervals` | evaluation | duration missed by, median, worst |");
+    println!("|---|---|---|");
+    let exact: Vec<f64> = all.iter().map(|x| fine.assess(x, None).duration).collect();
+    for intervals in [15, 31, 47, 63, 127] {
+        let accuracy = Accuracy { peak_intervals: intervals, ..problem.accuracy() };
+        let problem = problem.with_accuracy(accuracy);
+        let missed: Vec<f64> = all
+            .iter()
+            .zip(&exact)
+            .map(|(x, exact)| (exact - problem.assess(x, None).duration) / exact)
+            .map(|missed| missed.max(0.0))
+            .collect();
+        let worst = missed.iter().copied().fold(0.0, f64::max);
+        let mut workspace = problem.workspace();
+        let time = median(
+            (0..TURNS)
+                .map(|_| {
+                    microseconds(COUNT, || {
+                        for x in &all {
+                            black_box(problem.evaluate(black_box(x), None, &mut workspace));
+                        }
+                    })
+                })
+                .collect(),
+        );
+        println!("| {intervals} | {time:.2} µs | {:.0e}, {worst:.0e} |", median(missed));
+    }
+    println!();
 }
 
 fn main() {
     let paper = Paper::new();
+    let width = Width::widest();
+    println!("{} lanes ({}), one thread, median of {TURNS} turns\n", width.lanes(), width.name());
     evaluations(&paper);
     runs(&paper);
     convex(&paper);
+    bound(&paper);
+    accuracies(&paper);
 }
