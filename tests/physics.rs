@@ -19,7 +19,8 @@ fn paper() -> (Reorientation, Boxes) {
     TaskFile::read(&document).unwrap().build(&document).unwrap()
 }
 
-/// A serial arm with as many joints as there are rows of seven numbers from −1 to 1.
+/// A serial arm with as many joints as there are rows of seven numbers from −1 to 1; about half of its
+/// twists are quarter turns.
 fn robot(joints: &[[f64; 7]]) -> Robot {
     let mut text = "name = 'drawn'\n[base]\nmass = 80\nmount = [0.4, -0.2, 0.3]\n\
          mount_zyx_deg = [20, -50, 70]\n\
@@ -31,7 +32,7 @@ fn robot(joints: &[[f64; 7]]) -> Robot {
             "[[joint]]\ndh = {{ a = {a}, d = {d}, alpha_deg = {}, offset_deg = {} }}\n\
              range_deg = [-180, 180]\nmass = {}\ncentre_of_mass = [{x}, {y}, {z}]\n\
              inertia = {{ xx = 0.5, yy = 0.6, zz = 0.4, xy = {}, xz = {}, yz = {} }}\n",
-            180.0 * alpha,
+            if *x > 0.0 { 90.0 * (2.0 * alpha).round() } else { 180.0 * alpha },
             180.0 * offset,
             5.0 + 4.0 * x,
             0.1 * x,

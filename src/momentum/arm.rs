@@ -27,12 +27,35 @@ pub struct Arm {
 pub struct ArmLink {
     /// The DH offset \[rad\].
     offset: f64,
-    /// Sine and cosine of the DH twist.
-    twist: (f64, f64),
+    twist: Twist,
     /// The DH steps along `x` and `z` to the next joint \[m\].
     step: [f64; 2],
     /// The link itself and the mass of all outward of it, as if gathered at the next joint.
     body: RigidBody<f64>,
+}
+
+/// The DH twist. Most arms have nothing but quarter turns, which take no products.
+#[derive(Debug, Clone, Copy)]
+enum Twist {
+    None,
+    Quarter,
+    Half,
+    ThreeQuarters,
+    Any { sin: f64, cos: f64 },
+}
+
+impl Twist {
+    fn new((sin, cos): (f64, f64)) -> Self {
+        // What is left of a right angle's cosine.
+        let is = |value: f64, whole: f64| (value - whole).abs() < 1e-15;
+        match (sin, cos) {
+            (s, c) if is(s, 0.0) && is(c, 1.0) => Self::None,
+            (s, c) if is(s, 1.0) && is(c, 0.0) => Self::Quarter,
+            (s, c) if is(s, 0.0) && is(c, -1.0) => Self::Half,
+            (s, c) if is(s, -1.0) && is(c, 0.0) => Self::ThreeQuarters,
+            (sin, cos) => Self::Any { sin, cos },
+        }
+    }
 }
 
 /// What lies outward of a joint the sweep has come to; of nothing at first.
@@ -121,7 +144,7 @@ impl ArmLink {
         let next = Vec3::of(&Vector3::new(step.x, 0.0, step.z));
         link.first_moment += next * outer_mass;
         link.inertia += Sym3::point(next, next * outer_mass);
-        Self { offset, twist: joint.dh.twist, step: [step.x, step.z], body: link }
+        Self { offset, twist: Twist::new(joint.dh.twist), step: [step.x, step.z], body: link }
     }
 }
 
@@ -151,8 +174,33 @@ impl<T: Scalar> Outer<T> {
 
     /// From axes that are turned about `x` into those they are turned from.
     #[inline(always)]
-    fn about_x(self, (sin, cos): (f64, f64)) -> Self {
-        let (sin, cos) = (T::of(sin), T::of(cos));
+    fn about_x(self, twist: Twist) -> Self {
+        match twist {
+            Twist::None => self,
+            Twist::Quarter => self.quarter_about_x(),
+            Twist::Half => self.quarter_about_x().quarter_about_x(),
+            Twist::ThreeQuarters => self.quarter_about_x().quarter_about_x().quarter_about_x(),
+            Twist::Any { sin, cos } => self.any_about_x(T::of(sin), T::of(cos)),
+        }
+    }
+
+    #[inline(always)]
+    fn quarter_about_x(self) -> Self {
+        let turn = |v: Vec3<T>| Vec3::new(v.x, -v.z, v.y);
+        let Sym3 { diagonal: d, beside: b } = self.inertia;
+        Self {
+            first_moment: turn(self.first_moment),
+            inertia: Sym3 {
+                diagonal: Vec3::new(d.x, d.z, d.y),
+                beside: Vec3::new(-b.x, b.z, -b.y),
+            },
+            linear: turn(self.linear),
+            angular: turn(self.angular),
+        }
+    }
+
+    #[inline(always)]
+    fn any_about_x(self, sin: T, cos: T) -> Self {
         let turn =
             |v: Vec3<T>| Vec3::new(v.x, across(v.y, v.z, sin, cos), along(v.y, v.z, sin, cos));
         let Sym3 { diagonal: d, beside: b } = self.inertia;
