@@ -9,7 +9,7 @@ use driftless::analysis;
 use driftless::experiment::{self, Instance, Plan, Progress, Record, RunSpec, Store};
 use driftless::optimiser::Settings;
 use driftless::oracle::{Oracle, Watch};
-use driftless::problem::{Bounds, Evaluation, Points, Problem};
+use driftless::problem::{Analytic, Bounds, Evaluation, Points, Problem, TestFunction};
 use polars::prelude::*;
 
 /// What a problem does at a point.
@@ -246,6 +246,20 @@ fn every_run_leaves_a_record_whatever_the_problem_does() {
         }
     }
     assert_eq!(HEARD.load(Ordering::Relaxed), 0, "panics were heard");
+}
+
+/// Hundreds of runs that end at once: none begins within another, where they would use up the stack.
+#[test]
+fn many_short_runs_are_stored() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path()).unwrap();
+    let problem = Arc::new(Analytic::new(TestFunction::Sphere, 3, 0));
+    let instance = Instance::other("", "sphere", problem);
+    let number = |n| NonZeroU64::new(n).unwrap();
+    let random = [Settings::by_name("random").unwrap()];
+    let plan = Plan::over("many", vec![instance], &random, number(600), number(5));
+    assert_eq!(run(&plan, &store), 600);
+    assert!(plan.runs.iter().all(|run| store.has(&run.key)));
 }
 
 /// Costs its number of calls so far; panics at one call.

@@ -1,8 +1,7 @@
 //! Runs what is missing, on as many threads as asked for.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
-
-use rayon::prelude::*;
 
 use super::caught::caught;
 use super::record::Ended;
@@ -29,15 +28,26 @@ pub fn run(
 ) -> Result<(), RunError> {
     let missing: Vec<_> = runs.iter().filter(|run| !store.has(&run.key)).collect();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build()?;
-    pool.install(|| {
-        missing.par_iter().with_max_len(1).try_for_each(|run| {
-            if let Some(record) = one(plan, run, watch)? {
-                store.write(&record)?;
-                progress.finished(run, &record);
+    // Each thread takes the next run. Shared out as tasks of the pool, a run could begin within another's:
+    // polars has threads of its own, and a worker that waits for them takes up whatever task there is.
+    let next = AtomicUsize::new(0);
+    let outcomes = pool.broadcast(|_| {
+        while let Some(run) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let done = one(plan, run, watch).and_then(|record| {
+                record.map(|record| store.write(&record).map(|()| record)).transpose()
+            });
+            match done {
+                Ok(Some(record)) => progress.finished(run, &record),
+                Ok(None) => {}
+                Err(error) => {
+                    next.store(missing.len(), Ordering::Relaxed);
+                    return Err(error.into());
+                }
             }
-            Ok(())
-        })
-    })
+        }
+        Ok(())
+    });
+    outcomes.into_iter().collect()
 }
 
 /// Why running came to an end.
