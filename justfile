@@ -18,10 +18,16 @@ lint:
 bench:
     cargo bench
 
-# scp beside CasADi and IPOPT, the other optimisers beside theirs; needs Python 3.11
+# the tables of docs/performance.md
+speed:
+    cargo bench --bench speed
+
+# scp beside CasADi and IPOPT, the other optimisers beside theirs, the rollout beside Pinocchio; needs
+# Python 3.11 and g++
 peers:
     benches/peers/casadi/run.sh
     benches/peers/optimisers/run.sh
+    benches/peers/pinocchio/run.sh
 
 # the default experiment
 run:
