@@ -10,7 +10,7 @@ use std::num::NonZeroUsize;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Optimiser, uniform_point};
+use super::{Optimiser, rank, uniform_point};
 use crate::input::{count, finite, non_negative, positive, share};
 use crate::oracle::{Oracle, Rng, Stop};
 use crate::problem::{Evaluation, Formulation, Points};
@@ -151,10 +151,11 @@ impl Swarm {
     fn evaluate(&mut self, oracle: &mut Oracle<'_>) -> Result<(), Stop> {
         oracle.evaluate_batch(&self.positions, &mut self.evaluations)?;
         for (i, evaluation) in self.evaluations.iter().enumerate() {
-            if evaluation.cost < self.best_costs[i] {
-                self.best_costs[i] = evaluation.cost;
+            let cost = rank(evaluation);
+            if cost < self.best_costs[i] {
+                self.best_costs[i] = cost;
                 self.best_positions[i].copy_from_slice(&self.positions[i]);
-                if evaluation.cost < self.best_costs[self.leader] {
+                if cost < self.best_costs[self.leader] {
                     self.leader = i;
                 }
             }

@@ -66,7 +66,7 @@ impl Tables {
     }
 }
 
-/// Room for the evaluation of one motion after the other.
+/// Room for the evaluation of one motion of the same problem after the other.
 #[derive(Debug, Clone)]
 pub struct Workspace {
     pub(super) samples: Samples,
@@ -112,7 +112,8 @@ impl Reorientation {
     }
 
     /// The same problem, evaluated with so many lanes, or fewer where the machine has not so many; it
-    /// begins with all that there are. Nothing but time depends on it.
+    /// begins with all that there are. Costs differ in their last digits between one lane and more, and
+    /// not at all between more.
     #[must_use]
     pub fn with_width(&self, width: Width) -> Self {
         Self { width, ..self.clone() }
