@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 
 use crate::scalar::Scalar;
 
-/// The most lanes of any type here. Tables that are loaded from are padded to a multiple of it.
+/// The most lanes of any type here. Tables that are loaded from are padded to a multiple of twice that.
 pub const MOST: usize = 8;
 
 /// Numbers for as many lanes as there can be. A table of these is loaded from without crossing the lines
@@ -85,15 +85,22 @@ pub enum Width {
 impl Width {
     /// All that this machine has, the narrowest first.
     pub fn available() -> impl Iterator<Item = Self> {
-        #[cfg(target_arch = "x86_64")]
-        let has = |width: &Self| match width {
+        [Self::Scalar, Self::Avx2, Self::Avx512].into_iter().filter(|width| width.is_available())
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn is_available(self) -> bool {
+        match self {
             Self::Scalar => true,
             Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
-            Self::Avx512 => is_x86_feature_detected!("avx512f"),
-        };
-        #[cfg(not(target_arch = "x86_64"))]
-        let has = |width: &Self| *width == Self::Scalar;
-        [Self::Scalar, Self::Avx2, Self::Avx512].into_iter().filter(has)
+            // For the compiler the one implies the other.
+            Self::Avx512 => Self::Avx2.is_available() && is_x86_feature_detected!("avx512f"),
+        }
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn is_available(self) -> bool {
+        self == Self::Scalar
     }
 
     /// The widest that this machine has.
@@ -125,8 +132,8 @@ impl Width {
     pub fn run<W: LaneWork>(self, work: W) -> W::Output {
         match self.min(Self::widest()) {
             Self::Scalar => work.run::<f64>(),
-            // SAFETY: the widest is among those available, so the processor has been asked; and who
-            // has AVX-512 has AVX2.
+            // SAFETY: the widest is among those available, so the processor has been asked; what has
+            // AVX-512 has been asked for AVX2 and FMA too.
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => unsafe { x86::avx2(work) },
             #[cfg(target_arch = "x86_64")]
@@ -166,9 +173,9 @@ mod x86 {
         work.run::<F64x8>()
     }
 
-    // SAFETY of every block below: a value of these types exists only in the two functions above, which
-    // the processor's instructions are enabled for; pointers are those of slices just checked for their
-    // length.
+    // SAFETY of every block below: these types are named in the two functions above alone, so whoever has
+    // one of them, or its functions, got it after the processor was asked; pointers are those of slices just
+    // checked for their length.
 
     macro_rules! operator {
         ($lanes:ident, $trait:ident, $method:ident, $instruction:ident) => {

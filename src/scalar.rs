@@ -1,4 +1,5 @@
-//! The one numeric bound of the chain from joint angles to cost, and sine and cosine over it.
+//! The one numeric bound of the chain from joint angles to cost; sine, cosine and polynomials over it; two
+//! numbers at once.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -7,8 +8,9 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 ///
 /// Kinematics, momentum and attitude are written once over this bound: `f64` evaluates one place of a
 /// path, a vector of the processor one place a lane. Every operation is rounded as that of `f64` is, so
-/// that lanes of any number give the same bits. A product and a sum are rounded at once by processors that
-/// can, which are all that have vectors here; only a processor that cannot differs, in the last place.
+/// that vectors of any number of lanes give the same bits. They round a product and a sum at once; one `f64`
+/// at a time does so only where the compiler knows that the processor can, and elsewhere differs in the last
+/// place.
 pub trait Scalar:
     Debug
     + Copy

@@ -185,7 +185,8 @@ impl<T: Scalar> Mat3<T> {
     /// The same matrix in every lane.
     #[inline(always)]
     pub fn of(m: &Matrix3<f64>) -> Self {
-        Self([0, 1, 2].map(|j| Vec3::new(T::of(m[(0, j)]), T::of(m[(1, j)]), T::of(m[(2, j)]))))
+        let column = |j| Vec3::new(T::of(m[(0, j)]), T::of(m[(1, j)]), T::of(m[(2, j)]));
+        Self([column(0), column(1), column(2)])
     }
 
     /// A multiple of the identity.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use driftless::input::Document;
+use driftless::lanes::Width;
 use driftless::oracle::Rng;
 use driftless::problem::{
     BestKnown, Composite, Formulated, Formulation, Multipliers, Problem, TaskFile,
@@ -94,6 +95,31 @@ fn check_curvature(x: &[f64]) {
             let miss = (found[(k, j)] - expected).abs();
             assert!(miss < 1e-3 * found.amax(), "{k} {j}: {} {expected}", found[(k, j)]);
         }
+    }
+}
+
+/// Vectors of any number of lanes give the same bits.
+#[test]
+fn do_not_depend_on_lanes() {
+    let mut rng = Rng::new(9);
+    for terms in 1..=4 {
+        let x = point(terms, &mut rng);
+        let document = Document::embedded("task", &format!("[trajectory]\nterms = {terms}\n"));
+        let (problem, boxes) = TaskFile::read(&document).unwrap().build(&document).unwrap();
+        let mut all = Vec::new();
+        for width in Width::available().filter(|width| *width != Width::Scalar) {
+            let problem = Arc::new(problem.with_width(width));
+            let problem = Formulated::new(Formulation::TimeFree, problem, &boxes);
+            let here = problem.linearise(&x);
+            let pieces = here.pieces.iter().map(|piece| (piece.place, 0.3)).collect();
+            let multipliers = Multipliers { residual: dvector![0.8, -1.1, 0.5], pieces };
+            let mut numbers = here.residual.as_slice().to_vec();
+            numbers.extend(&here.residual_jacobian);
+            here.pieces.iter().for_each(|piece| numbers.extend(&piece.gradient));
+            numbers.extend(&problem.curvature(&x, &multipliers));
+            all.push(numbers.into_iter().map(f64::to_bits).collect::<Vec<_>>());
+        }
+        assert!(all.windows(2).all(|pair| pair[0] == pair[1]), "{terms} terms");
     }
 }
 

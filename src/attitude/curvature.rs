@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Matrix3xX, Vector3};
 
 use super::node::{Evaluator, Node};
-use crate::lanes::{Lanes, MOST};
+use crate::lanes::Lanes;
 use crate::robot::Robot;
 use crate::so3::{self, Quat};
 use crate::trajectory::{Family, Grid};
@@ -26,7 +26,7 @@ const STEP: f64 = 1e-5;
 #[derive(Debug, Clone)]
 pub struct Midpoints {
     steps: usize,
-    /// Times beyond the last step are the path's start, where nothing depends on coefficients.
+    /// Filled up with the path's start, where nothing depends on coefficients.
     grid: Grid<2>,
 }
 
@@ -40,8 +40,7 @@ struct Part<T> {
 impl Midpoints {
     /// At the middles of so many steps.
     pub fn new(family: &Family, steps: usize) -> Self {
-        let times = (0..steps.next_multiple_of(MOST))
-            .map(|i| if i < steps { (i as f64 + 0.5) / steps as f64 } else { 0.0 });
+        let times = (0..steps).map(|i| (i as f64 + 0.5) / steps as f64);
         Self { steps, grid: Grid::new(family, times) }
     }
 
@@ -64,8 +63,8 @@ impl Midpoints {
         let width = 1.0 / self.steps as f64;
         let mut evaluator = Evaluator::<T>::new(robot, family);
         let mut parts = Vec::new();
-        let mut following = vec![Quat::identity(); self.grid.len()];
-        for first in (0..self.grid.len()).step_by(T::COUNT) {
+        let mut following = vec![Quat::identity(); self.grid.times()];
+        for first in (0..self.grid.times()).step_by(T::COUNT) {
             let phases = evaluator.phases(&self.grid, first, coefficients);
             let node = evaluator.evaluate(&phases);
             so3::exp(node.rate.times(width / 2.0)).spread(&mut following[first..]);
@@ -80,7 +79,7 @@ impl Midpoints {
 
         let dimension = family.dimension();
         let mut curvature = DMatrix::zeros(dimension, dimension);
-        let mut slopes = vec![Matrix3xX::zeros(dimension); self.grid.len()];
+        let mut slopes = vec![Matrix3xX::zeros(dimension); self.grid.times()];
         for part in parts {
             let turn = Quat::<T>::gather(&following[part.first..]);
             let turn_back = turn.inverse().matrix().times(width);
@@ -109,7 +108,7 @@ impl Midpoints {
         let terms = family.terms();
         for joint in 0..family.joints() {
             for k in 0..terms {
-                let [bump, slope] = self.grid.part(k + 1, *first);
+                let [bump, slope] = self.grid.bump(k, *first);
                 let change = node.by_phase[joint] * bump + node.by_phase_rate[joint] * slope;
                 let column = joint * terms + k;
                 let each = (turn * change).lanes();
@@ -134,7 +133,7 @@ impl Midpoints {
         let (terms, joints) = (family.terms(), family.joints());
         let mut bumps: Vec<[T; 2]> = Vec::with_capacity(terms);
         for k in 0..terms {
-            bumps.push(self.grid.part(k + 1, first));
+            bumps.push(self.grid.bump(k, first));
         }
         for j in 0..joints {
             let here = phases[j];
@@ -148,7 +147,11 @@ impl Midpoints {
                 for (k, &[value, slope]) in bumps.iter().enumerate() {
                     let row = value * phase + (slope + slope) * mixed;
                     for (l, &[other, _]) in bumps.iter().enumerate() {
-                        sum[(i * terms + k, j * terms + l)] += sum_of_lanes(row * other);
+                        let entry = &mut sum[(i * terms + k, j * terms + l)];
+                        // One place after the other, whatever the number of lanes.
+                        for place in &(row * other).numbers()[..T::COUNT] {
+                            *entry += place;
+                        }
                     }
                 }
             }
@@ -156,8 +159,29 @@ impl Midpoints {
     }
 }
 
-/// One lane after the other.
-#[inline(always)]
-fn sum_of_lanes<T: Lanes>(lanes: T) -> f64 {
-    lanes.numbers()[..T::COUNT].iter().sum()
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Robot;
+
+    /// Any number of steps, so however many lanes stay idle, comes near what many steps give.
+    #[test]
+    fn idle_lanes_add_nothing() {
+        let document = Robot::embedded("xiao2023").unwrap();
+        let robot = Robot::from_document(&document).unwrap();
+        let ranges: Vec<_> = robot.joints.iter().map(|joint| joint.range).collect();
+        let (start, goal) = ([0.2, 0.5, 0.8, -0.3, -0.4, 0.7], [0.7, 1.0, 1.5, -0.2, -0.5, 1.0]);
+        let family = Family::new(&ranges, &start, &goal, 2);
+        let coefficients: Vec<f64> = (0..12).map(|i| 0.03 * f64::from(i) - 0.2).collect();
+        let p = Vector3::new(0.4, -0.7, 0.6);
+        let curvature = |steps| {
+            Midpoints::new(&family, steps).curvature::<f64>(&robot, &family, &coefficients, &p)
+        };
+        let exact = curvature(400).curvature;
+        for steps in 8..=33 {
+            let miss = (curvature(steps).curvature - &exact).norm() / exact.norm();
+            // The midpoint rule's error falls with the square; here its factor is 1.3.
+            assert!(miss < 2.0 / (steps * steps) as f64, "{steps} steps: {miss}");
+        }
+    }
 }

@@ -13,6 +13,8 @@ pub use curvature::{Midpoints, RotationCurvature};
 pub use rollout::{JointState, Rollout};
 pub use slopes::RotationSlopes;
 
+use std::ops::{Add, Mul, Sub};
+
 use nalgebra::UnitQuaternion;
 
 use crate::momentum::base_twist;
@@ -45,15 +47,21 @@ pub fn increments<'a>(
             path.angles_and_rates((i as f64 + node) * width, &mut angles, &mut rates);
             base_twist(robot, &angles, &rates).angular * width
         };
-        let [w1, w2, w3] = GAUSS.map(&mut rate);
-        let moments = [w2, (w3 - w1) * (SQRT_15 / 3.0), (w3 - w2 * 2.0 + w1) * (10.0 / 3.0)];
-        so3::exp(magnus(moments)).into()
+        so3::exp(magnus(gauss_moments(GAUSS.map(&mut rate)))).into()
     })
 }
 
 /// The rotation of the base over the whole path, from its attitude at the start, in base axes.
 pub fn net_rotation(robot: &Robot, path: &Path<'_>, steps: usize) -> UnitQuaternion<f64> {
     increments(robot, path, steps).fold(UnitQuaternion::identity(), |net, step| net * step)
+}
+
+/// The moments of a step from what stands at its three Gauss nodes.
+fn gauss_moments<V>([w1, w2, w3]: [V; 3]) -> [V; 3]
+where
+    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>,
+{
+    [w2, (w3 - w1) * (SQRT_15 / 3.0), (w3 - w2 * 2.0 + w1) * (10.0 / 3.0)]
 }
 
 /// The rotation vector of a step, to sixth order, from its moments: `a₁ + a₂ t + a₃ t²`, `t` from −½ to ½

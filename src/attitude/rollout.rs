@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use super::{GAUSS, SQRT_15, magnus};
+use super::{GAUSS, gauss_moments, magnus};
 use crate::lanes::{Block, Lanes, MOST};
 use crate::momentum::{Arm, Outer};
 use crate::scalar::{Pair, Scalar as _};
@@ -29,7 +29,7 @@ const NODE_PLACES: [f64; NODES / 2] =
 /// for every step.
 #[derive(Debug, Clone)]
 pub struct Rollout {
-    panels: usize,
+    pub(super) panels: usize,
     /// For every [`MOST`] panels and each node as many times, those of the panels. A panel beyond the
     /// last stands still at the path's start.
     pub(super) grid: Grid<2>,
@@ -85,7 +85,7 @@ impl Rollout {
         let mut net = Quat::identity();
         for group in self.groups() {
             let mut panels = [Quat::identity(); MOST];
-            for part in (0..MOST).step_by(T::COUNT) {
+            for part in (0..MOST).step_by(T::COUNT).take_while(|part| group + part < self.panels) {
                 self.drive::<T>(arm, family, coefficients, group + part, joints);
                 let mut rates = [Vec3::zero(); NODES];
                 for (rate, joints) in rates.iter_mut().zip(joints.chunks_exact(family.joints())) {
@@ -173,10 +173,10 @@ fn moments(nodes: &[f64; NODES], panels: usize) -> [[[f64; NODES]; 3]; STEPS] {
                 let others = (0..NODES).filter(|&m| m != n);
                 others.map(|m| (place - nodes[m]) / (nodes[n] - nodes[m])).product()
             };
-            let [w1, w2, w3] = GAUSS.map(|gauss| width * at((step as f64 + gauss) / STEPS as f64));
-            moments[0][n] = w2;
-            moments[1][n] = (w3 - w1) * (SQRT_15 / 3.0);
-            moments[2][n] = (w3 - w2 * 2.0 + w1) * (10.0 / 3.0);
+            let places = GAUSS.map(|gauss| width * at((step as f64 + gauss) / STEPS as f64));
+            for (moment, own) in moments.iter_mut().zip(gauss_moments(places)) {
+                moment[n] = own;
+            }
         }
         moments
     })

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3xX, UnitQuaternion, Vector3};
 use super::node::{Evaluator, Node};
 use super::rollout::{NODES, Rollout, STEPS, step_moments};
 use super::{magnus, magnus_slopes};
-use crate::lanes::{Lanes, MOST};
+use crate::lanes::Lanes;
 use crate::robot::Robot;
 use crate::so3::{self, Quat};
 use crate::trajectory::Family;
@@ -44,7 +44,7 @@ impl Rollout {
         let mut evaluator = Evaluator::<T>::new(robot, family);
         let mut all = Vec::new();
         let mut rotations = Vec::new();
-        for first in self.groups().flat_map(|group| (group..group + MOST).step_by(T::COUNT)) {
+        for first in (0..self.panels).step_by(T::COUNT) {
             let panels = self.panels(&mut evaluator, coefficients, first);
             let mut rotation = panels.steps[0];
             for step in &panels.steps[1..] {
@@ -128,7 +128,7 @@ impl Rollout {
                 let by_phase = turns[n] * node.by_phase[joint];
                 let by_phase_rate = turns[n] * node.by_phase_rate[joint];
                 for k in 0..terms {
-                    let [bump, slope] = self.grid.part(k + 1, place);
+                    let [bump, slope] = self.grid.bump(k, place);
                     sums[joint * terms + k] += by_phase * bump + by_phase_rate * slope;
                 }
             }

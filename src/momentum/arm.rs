@@ -27,7 +27,7 @@ pub struct Arm {
 pub struct ArmLink {
     /// The DH offset \[rad\].
     offset: f64,
-    twist: Twist,
+    twist: AxisTurn,
     /// The DH steps along `x` and `z` to the next joint \[m\].
     step: [f64; 2],
     /// The link itself and the mass of all outward of it, as if gathered at the next joint.
@@ -36,7 +36,7 @@ pub struct ArmLink {
 
 /// The DH twist. Most arms have nothing but quarter turns, which take no products.
 #[derive(Debug, Clone, Copy)]
-enum Twist {
+enum AxisTurn {
     None,
     Quarter,
     Half,
@@ -44,7 +44,7 @@ enum Twist {
     Any { sin: f64, cos: f64 },
 }
 
-impl Twist {
+impl AxisTurn {
     fn new((sin, cos): (f64, f64)) -> Self {
         // What is left of a right angle's cosine.
         let is = |value: f64, whole: f64| (value - whole).abs() < 1e-15;
@@ -144,7 +144,7 @@ impl ArmLink {
         let next = Vec3::of(&Vector3::new(step.x, 0.0, step.z));
         link.first_moment += next * outer_mass;
         link.inertia += Sym3::point(next, next * outer_mass);
-        Self { offset, twist: Twist::new(joint.dh.twist), step: [step.x, step.z], body: link }
+        Self { offset, twist: AxisTurn::new(joint.dh.twist), step: [step.x, step.z], body: link }
     }
 }
 
@@ -174,13 +174,13 @@ impl<T: Scalar> Outer<T> {
 
     /// From axes that are turned about `x` into those they are turned from.
     #[inline(always)]
-    fn about_x(self, twist: Twist) -> Self {
+    fn about_x(self, twist: AxisTurn) -> Self {
         match twist {
-            Twist::None => self,
-            Twist::Quarter => self.quarter_about_x(),
-            Twist::Half => self.quarter_about_x().quarter_about_x(),
-            Twist::ThreeQuarters => self.quarter_about_x().quarter_about_x().quarter_about_x(),
-            Twist::Any { sin, cos } => self.any_about_x(T::of(sin), T::of(cos)),
+            AxisTurn::None => self,
+            AxisTurn::Quarter => self.quarter_about_x(),
+            AxisTurn::Half => self.quarter_about_x().quarter_about_x(),
+            AxisTurn::ThreeQuarters => self.quarter_about_x().quarter_about_x().quarter_about_x(),
+            AxisTurn::Any { sin, cos } => self.any_about_x(T::of(sin), T::of(cos)),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 
-use super::reorientation::Tables;
+use super::measure::Tables;
 use super::{Formulated, Problem, Reorientation};
 use crate::attitude::{RotationCurvature, RotationSlopes};
 use crate::lanes::{LaneWork, Lanes};

@@ -7,11 +7,10 @@ use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
 use super::Evaluation;
-use crate::attitude::{JointState, Midpoints, Rollout};
-use crate::lanes::{LaneWork, Lanes, Width};
-use crate::momentum::Arm;
+use super::measure::{Fitness, Measure, Tables, Turn, Workspace, powers};
+use crate::lanes::Width;
 use crate::task::Task;
-use crate::trajectory::{ArchRoom, Family, Peaks, Sampler, Samples, excess, longest_asked};
+use crate::trajectory::{Family, Peaks, excess, longest_asked};
 
 /// The base error that counts as one: `k_q = sin(½ · 1°)` (eq. 33; its "δ" is π).
 const K_Q_DEG: f64 = 1.0;
@@ -30,7 +29,7 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// For what is recorded and shown: on the motions of interest exact to rounding.
-    pub const FINE: Self = Self { attitude_steps: 400, peak_intervals: 1024 };
+    pub const FINE: Self = Self { attitude_steps: 402, peak_intervals: 1024 };
 }
 
 /// The reorientation task over one trajectory family.
@@ -41,37 +40,6 @@ pub struct Reorientation {
     accuracy: Accuracy,
     tables: Arc<Tables>,
     width: Width,
-}
-
-/// All that does not depend on the motion, worked out once.
-#[derive(Debug)]
-pub(super) struct Tables {
-    pub(super) arm: Arm,
-    pub(super) rollout: Rollout,
-    pub(super) sampler: Sampler,
-    pub(super) midpoints: Midpoints,
-}
-
-/// Midpoint steps along the path for the curvature.
-const CURVATURE_STEPS: usize = 12;
-
-impl Tables {
-    fn new(task: &Task, family: &Family, accuracy: Accuracy) -> Arc<Self> {
-        Arc::new(Self {
-            arm: Arm::new(&task.robot),
-            rollout: Rollout::new(family, accuracy.attitude_steps),
-            sampler: Sampler::new(family, accuracy.peak_intervals),
-            midpoints: Midpoints::new(family, CURVATURE_STEPS),
-        })
-    }
-}
-
-/// Room for the evaluation of one motion of the same problem after the other.
-#[derive(Debug, Clone)]
-pub struct Workspace {
-    pub(super) samples: Samples,
-    joints: Vec<JointState>,
-    arches: ArchRoom,
 }
 
 /// What is known of one motion.
@@ -116,7 +84,7 @@ impl Reorientation {
     /// not at all between more.
     #[must_use]
     pub fn with_width(&self, width: Width) -> Self {
-        Self { width, ..self.clone() }
+        Self { width: width.min(Width::widest()), ..self.clone() }
     }
 
     /// The lanes that motions are evaluated with.
@@ -145,11 +113,7 @@ impl Reorientation {
 
     /// Room to evaluate motions in.
     pub fn workspace(&self) -> Workspace {
-        Workspace {
-            samples: self.tables.sampler.samples(self.family.joints()),
-            joints: Vec::new(),
-            arches: ArchRoom::default(),
-        }
+        self.tables.workspace(&self.family)
     }
 
     /// The motion along the path with these coefficients, in `duration` seconds or, without one, in
@@ -213,89 +177,18 @@ impl Reorientation {
     }
 
     /// The base's rotation over the path with these coefficients.
+    ///
+    /// # Panics
+    ///
+    /// Panics when there are more or fewer coefficients than the family's dimension.
     pub fn net_rotation(&self, coefficients: &[f64]) -> UnitQuaternion<f64> {
+        self.check(coefficients);
         self.width.run(Turn { problem: self, coefficients, joints: &mut Vec::new() })
     }
 
     /// What `‖δq_b‖` and `t_f` weigh in `J` where no limit is exceeded.
     pub(super) fn weights(&self) -> (f64, f64) {
         weights(self.task.base_weight)
-    }
-}
-
-/// First to third power of a duration: what rate, acceleration and jerk over it are divided by.
-fn powers(duration: f64) -> [f64; 3] {
-    [duration, duration * duration, duration * duration * duration]
-}
-
-/// All that the cost follows from: `‖δq_b‖`, and of each order the largest peak as a multiple of its limit,
-/// where it matters.
-struct Fitness<'a> {
-    problem: &'a Reorientation,
-    coefficients: &'a [f64],
-    duration: Option<f64>,
-    workspace: &'a mut Workspace,
-}
-
-impl LaneWork for Fitness<'_> {
-    type Output = (f64, [f64; 3]);
-
-    #[inline(always)]
-    fn run<T: Lanes>(self) -> (f64, [f64; 3]) {
-        let Self { problem, coefficients, duration, workspace } = self;
-        let error = Measure { problem, coefficients, workspace }.run::<T>();
-        let Workspace { samples, arches, .. } = workspace;
-        let matters = |known: [f64; 3]| match duration {
-            // Within a limit it does not matter how far.
-            Some(duration) => {
-                let allowed = powers(duration);
-                from_fn(|k| f64::max(known[k], allowed[k]))
-            }
-            None => powers(longest_asked(known)),
-        };
-        let Reorientation { task, family, .. } = problem;
-        let largest =
-            samples.largest_ratio::<T>(&task.limits, matters, family, coefficients, arches);
-        (error, largest)
-    }
-}
-
-/// Samples a path, and finds `‖δq_b‖` of eq. 20 at its end.
-struct Measure<'a> {
-    problem: &'a Reorientation,
-    coefficients: &'a [f64],
-    workspace: &'a mut Workspace,
-}
-
-impl LaneWork for Measure<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn run<T: Lanes>(self) -> f64 {
-        let Self { problem, coefficients, workspace: Workspace { samples, joints, .. } } = self;
-        problem.tables.sampler.sample::<T>(&problem.family, coefficients, samples);
-        let net = Turn { problem, coefficients, joints }.run::<T>();
-        problem.error_after(net).imag().norm()
-    }
-}
-
-/// The base's rotation over a path.
-struct Turn<'a> {
-    problem: &'a Reorientation,
-    coefficients: &'a [f64],
-    joints: &'a mut Vec<JointState>,
-}
-
-impl LaneWork for Turn<'_> {
-    type Output = UnitQuaternion<f64>;
-
-    #[inline(always)]
-    fn run<T: Lanes>(self) -> UnitQuaternion<f64> {
-        let Reorientation { tables, family, .. } = self.problem;
-        let Tables { arm, rollout, .. } = &**tables;
-        let net = rollout.net_rotation::<T>(arm, family, self.coefficients, self.joints);
-        let mount = UnitQuaternion::from_rotation_matrix(arm.mount());
-        mount * UnitQuaternion::from(net) * mount.inverse()
     }
 }
 
@@ -322,7 +215,7 @@ fn penalty(excess: &[f64; 3]) -> f64 {
 impl Assessment {
     /// The base's error angle \[rad\].
     pub fn residual(&self) -> f64 {
-        2.0 * self.attitude_error.min(1.0).asin()
+        2.0 * self.attitude_error.clamp(0.0, 1.0).asin()
     }
 
     /// The last three terms of `J`.

@@ -8,55 +8,43 @@ use crate::scalar::{Pair, Scalar};
 /// Step and bumps of a family at fixed times, with their first `N − 1` derivatives by `τ`: all of a phase
 /// that coefficients do not change, tabulated once.
 #[derive(Debug, Clone)]
-pub struct Grid<const N: usize> {
-    /// The number of times by the most lanes there are.
-    blocks: usize,
-    /// For [`MOST`] times after the other: step, then every bump, `N` blocks each.
+pub(crate) struct Grid<const N: usize> {
+    /// Blocks for each [`MOST`] times: `N` for the step, then `N` for every bump.
+    rows: usize,
     table: Vec<Block>,
 }
 
 impl<const N: usize> Grid<N> {
-    /// At these times; filled up with the last to a number that lanes divide in pairs.
-    pub fn new(family: &Family, times: impl IntoIterator<Item = f64>) -> Self {
+    /// At these times; filled up with the path's start to a number that pairs of lanes divide.
+    pub(crate) fn new(family: &Family, times: impl IntoIterator<Item = f64>) -> Self {
         let mut times: Vec<f64> = times.into_iter().collect();
-        if let Some(&last) = times.last() {
-            times.resize(times.len().next_multiple_of(2 * MOST), last);
-        }
-        let blocks = times.len() / MOST;
+        times.resize(times.len().next_multiple_of(2 * MOST), 0.0);
         let rows = N * (family.terms() + 1);
-        let mut table = vec![Block::default(); blocks * rows];
+        let mut table = vec![Block::default(); times.len() / MOST * rows];
         for (t, &tau) in times.iter().enumerate() {
             let parts = std::iter::once(step(tau)).chain(family.basis().bumps(tau));
             for (row, value) in parts.flat_map(|part: [f64; N]| part).enumerate() {
                 table[t / MOST * rows + row].0[t % MOST] = value;
             }
         }
-        Self { blocks, table }
+        Self { rows, table }
     }
 
     /// The number of times, those it was filled up with among them.
-    pub fn len(&self) -> usize {
-        self.blocks * MOST
+    pub(crate) fn times(&self) -> usize {
+        self.table.len() / self.rows * MOST
     }
 
-    /// Whether there is no time at all.
-    pub fn is_empty(&self) -> bool {
-        self.table.is_empty()
-    }
-
-    /// The table's blocks from time `first` on.
+    /// `N` blocks for each part from time `first` on.
     #[inline(always)]
-    fn blocks(&self, first: usize) -> std::slice::ChunksExact<'_, Block> {
-        let rows = self.table.len() / self.blocks;
-        self.table[first / MOST * rows..].chunks_exact(N)
+    fn parts(&self, first: usize) -> std::slice::ChunksExact<'_, Block> {
+        self.table[first / MOST * self.rows..].chunks_exact(N)
     }
 
-    /// What one part, 0 for the step and `k + 1` for bump `k`, and its derivatives are from time `first`
-    /// on, one time a lane.
+    /// What bump `k` and its derivatives are from time `first` on, one time a lane.
     #[inline(always)]
-    pub fn part<T: Lanes>(&self, part: usize, first: usize) -> [T; N] {
-        let rows = self.table.len() / self.blocks;
-        let row = first / MOST * rows + part * N;
+    pub(crate) fn bump<T: Lanes>(&self, k: usize, first: usize) -> [T; N] {
+        let row = first / MOST * self.rows + (k + 1) * N;
         load(&self.table[row..row + N], first)
     }
 }
@@ -73,7 +61,7 @@ fn load<T: Lanes, const N: usize>(blocks: &[Block], first: usize) -> [T; N] {
 impl Family {
     /// One joint's phase and its derivatives from time `first` on, for the joint's coefficients.
     #[inline(always)]
-    pub fn phase<T: Lanes, const N: usize>(
+    pub(crate) fn phase<T: Lanes, const N: usize>(
         &self,
         grid: &Grid<N>,
         first: usize,
@@ -81,7 +69,7 @@ impl Family {
         coefficients: &[f64],
     ) -> [T; N] {
         let span = &self.spans()[joint];
-        let mut parts = grid.blocks(first);
+        let mut parts = grid.parts(first);
         let mut phase = [T::of(0.0); N];
         if let Some(step) = parts.next() {
             phase = load::<T, N>(step, first);
@@ -101,7 +89,7 @@ impl Family {
 
     /// The same at two places at once.
     #[inline(always)]
-    pub fn phases<T: Lanes, const N: usize>(
+    pub(crate) fn phases<T: Lanes, const N: usize>(
         &self,
         grid: &Grid<N>,
         [near, far]: [usize; 2],
@@ -119,14 +107,14 @@ impl Family {
 
     /// A joint's angle and rate at a phase with its derivative, and how they follow it.
     #[inline(always)]
-    pub fn at_phase<T: Scalar>(&self, joint: usize, phase: [T; 2]) -> AtPhase<T> {
+    pub(crate) fn at_phase<T: Scalar>(&self, joint: usize, phase: [T; 2]) -> AtPhase<T> {
         self.spans()[joint].at_phase(phase)
     }
 
     /// A joint's rate, acceleration, jerk and one derivative more, by `τ`, where its phase has these
     /// derivatives.
     #[inline(always)]
-    pub fn rates<T: Scalar>(&self, joint: usize, phase: [T; 5]) -> [T; 4] {
+    pub(crate) fn rates<T: Scalar>(&self, joint: usize, phase: [T; 5]) -> [T; 4] {
         self.spans()[joint].rates(phase)
     }
 }

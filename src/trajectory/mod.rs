@@ -13,7 +13,8 @@ mod samples;
 
 pub use basis::Basis;
 pub use family::Family;
-pub use grid::Grid;
+pub(crate) use grid::Grid;
 pub use path::{AtPhase, JointPath, Path};
 pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, excess, longest_asked};
-pub use samples::{ArchRoom, Sampler, Samples};
+pub(crate) use samples::ArchRoom;
+pub use samples::{Sampler, Samples};

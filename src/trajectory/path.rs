@@ -123,7 +123,7 @@ impl Span {
         let square = s1 * s1;
         let twist = s1 * s2;
         let thrice = twist + twist + twist;
-        let [four, six] = [4.0, 6.0].map(T::of);
+        let (four, six) = (T::of(4.0), T::of(6.0));
         let bend = s2 * s2;
         let odd = square.mul_sub_from(s1, s3);
         let even = (square * s2).mul_sub_from(six, s4);

@@ -43,7 +43,7 @@ impl Sampler {
 
     /// Room for the samples of a path with so many joints.
     pub fn samples(&self, joints: usize) -> Samples {
-        let times = self.grid.len();
+        let times = self.grid.times();
         Samples {
             times,
             intervals: self.intervals,
@@ -54,9 +54,18 @@ impl Sampler {
     }
 
     /// Samples the path with these coefficients.
+    ///
+    /// # Panics
+    ///
+    /// Panics when the room was not made for this family.
     #[inline(always)]
     pub fn sample<T: Lanes>(&self, family: &Family, coefficients: &[f64], samples: &mut Samples) {
-        let times = self.grid.len();
+        let times = self.grid.times();
+        assert_eq!(
+            samples.rows.len(),
+            family.joints() * 4 * times + MOST,
+            "samples of this family"
+        );
         let reach = Pair::of(2.0 / self.intervals as f64);
         for (joint, rows) in samples.rows.chunks_exact_mut(4 * times).enumerate() {
             let coefficients = family.of_joint(joint, coefficients);
@@ -293,11 +302,12 @@ impl Row<'_> {
     fn refine(&self, joint: &JointPath<'_>, i: usize, tolerance: f64, floor: f64) -> Peak {
         let (mut a, mut b) = (self.tau(i), self.tau(i + 1));
         let (mut slope_a, mut slope_b) = (self.slopes[i], self.slopes[i + 1]);
+        let sign = slope_a.signum();
         let mut middle = self.cubic_peak(i);
         let mut best = Peak::default();
         for _ in 0..40 {
             let rates = joint.rates(middle);
-            best = best.or(Peak { value: rates[self.order - 1].abs(), tau: middle });
+            best = best.or(Peak { value: sign * rates[self.order - 1], tau: middle });
             let slope = rates[self.order];
             if slope * slope_b < 0.0 {
                 (a, slope_a) = (b, slope_b);
@@ -309,7 +319,7 @@ impl Row<'_> {
             let gain = (slope * (next - middle) / 2.0).abs();
             // Less where the slope is zero; not a number only where the path is none.
             let enough = gain <= tolerance * best.value || gain.is_nan();
-            if enough || best.value + (slope * (b - a)).abs() <= floor {
+            if enough || best.value + 2.0 * (slope * (b - a)).abs() <= floor {
                 break;
             }
             middle = next;
@@ -327,23 +337,26 @@ impl Row<'_> {
         let linear = 6.0 * rise - 4.0 * left - 2.0 * right;
         let square = 3.0 * (left + right) - 6.0 * rise;
         let t = 2.0 * left / ((linear * linear - 4.0 * square * left).sqrt() - linear);
-        self.tau(i) + width * t
+        // Cancellation may have left nothing of the denominator.
+        self.tau(i) + width * if t > 0.0 && t < 1.0 { t } else { 0.5 }
     }
 }
 
-/// What an arch between two samples can reach at most, from values and slopes at both; something below
-/// both where the slope does not turn from up to down (in absolute value).
+/// What an arch between two samples can reach at most, from values and slopes at both; zero where the
+/// slope, with the sign that it has at the left end, does not turn from up to down.
 ///
 /// The tangents at both ends meet above any concave arch. Over an interval much wider than the arch's bend
-/// it need not be concave, hence twice the tangents' rise.
+/// it need not be concave, hence twice the tangents' rise; where they meet outside the interval, twice that of the
+/// higher end's tangent over the whole of it.
 #[inline(always)]
 fn arch_bound<T: Scalar>([left, right]: [T; 2], [up, down]: [T; 2], width: T) -> T {
-    let sign = (left + right).select_below(0.0, T::of(-1.0), T::of(1.0));
+    let sign = up.select_below(0.0, T::of(-1.0), T::of(1.0));
     let (start, end, up, down) = (sign * left, sign * right, sign * up, -(sign * down));
     let meeting = start + up * (end - start + down * width) / (up + down);
     let higher = end.larger(start);
-    let bound = meeting + meeting - higher;
+    let rise = meeting - higher;
+    let steepest = width * (start - end).select_below(0.0, down, up);
+    let rise = rise.select_below(0.0, steepest, rise);
     let none = T::of(0.0);
-    // A slope of zero at an end is the peak itself, and the sample there.
-    up.select_below(f64::MIN_POSITIVE, none, down.select_below(f64::MIN_POSITIVE, none, bound))
+    down.select_below(f64::MIN_POSITIVE, none, higher + (rise + rise))
 }

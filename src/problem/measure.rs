@@ -1,0 +1,127 @@
+//! What of a motion the fitness follows from, in lanes.
+
+use std::array::from_fn;
+use std::sync::Arc;
+
+use nalgebra::UnitQuaternion;
+
+use super::{Accuracy, Reorientation};
+use crate::attitude::{JointState, Midpoints, Rollout};
+use crate::lanes::{LaneWork, Lanes};
+use crate::momentum::Arm;
+use crate::task::Task;
+use crate::trajectory::{ArchRoom, Family, Sampler, Samples, longest_asked};
+
+/// All that does not depend on the motion, worked out once.
+#[derive(Debug)]
+pub(super) struct Tables {
+    arm: Arm,
+    pub(super) rollout: Rollout,
+    pub(super) sampler: Sampler,
+    pub(super) midpoints: Midpoints,
+}
+
+/// Midpoint steps along the path for the curvature.
+const CURVATURE_STEPS: usize = 12;
+
+impl Tables {
+    pub(super) fn new(task: &Task, family: &Family, accuracy: Accuracy) -> Arc<Self> {
+        Arc::new(Self {
+            arm: Arm::new(&task.robot),
+            rollout: Rollout::new(family, accuracy.attitude_steps),
+            sampler: Sampler::new(family, accuracy.peak_intervals),
+            midpoints: Midpoints::new(family, CURVATURE_STEPS),
+        })
+    }
+
+    /// Room to evaluate motions in.
+    pub(super) fn workspace(&self, family: &Family) -> Workspace {
+        Workspace {
+            samples: self.sampler.samples(family.joints()),
+            joints: Vec::new(),
+            arches: ArchRoom::default(),
+        }
+    }
+}
+
+/// Room for the evaluation of one motion of the same problem after the other.
+#[derive(Debug, Clone)]
+pub struct Workspace {
+    pub(super) samples: Samples,
+    joints: Vec<JointState>,
+    arches: ArchRoom,
+}
+
+/// First to third power of a duration: what rate, acceleration and jerk over it are divided by.
+pub(super) fn powers(duration: f64) -> [f64; 3] {
+    [duration, duration * duration, duration * duration * duration]
+}
+
+/// All that the cost follows from: `‖δq_b‖`, and of each order the largest peak as a multiple of its limit,
+/// where it matters.
+pub(super) struct Fitness<'a> {
+    pub(super) problem: &'a Reorientation,
+    pub(super) coefficients: &'a [f64],
+    pub(super) duration: Option<f64>,
+    pub(super) workspace: &'a mut Workspace,
+}
+
+impl LaneWork for Fitness<'_> {
+    type Output = (f64, [f64; 3]);
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> (f64, [f64; 3]) {
+        let Self { problem, coefficients, duration, workspace } = self;
+        let error = Measure { problem, coefficients, workspace }.run::<T>();
+        let Workspace { samples, arches, .. } = workspace;
+        let matters = |known: [f64; 3]| match duration {
+            // Within a limit it does not matter how far.
+            Some(duration) => {
+                let allowed = powers(duration);
+                from_fn(|k| f64::max(known[k], allowed[k]))
+            }
+            None => powers(longest_asked(known)),
+        };
+        let (limits, family) = (&problem.task().limits, problem.family());
+        let largest = samples.largest_ratio::<T>(limits, matters, family, coefficients, arches);
+        (error, largest)
+    }
+}
+
+/// Samples a path, and finds `‖δq_b‖` of eq. 20 at its end.
+pub(super) struct Measure<'a> {
+    pub(super) problem: &'a Reorientation,
+    pub(super) coefficients: &'a [f64],
+    pub(super) workspace: &'a mut Workspace,
+}
+
+impl LaneWork for Measure<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> f64 {
+        let Self { problem, coefficients, workspace: Workspace { samples, joints, .. } } = self;
+        problem.tables().sampler.sample::<T>(problem.family(), coefficients, samples);
+        let net = Turn { problem, coefficients, joints }.run::<T>();
+        problem.error_after(net).imag().norm()
+    }
+}
+
+/// The base's rotation over a path.
+pub(super) struct Turn<'a> {
+    pub(super) problem: &'a Reorientation,
+    pub(super) coefficients: &'a [f64],
+    pub(super) joints: &'a mut Vec<JointState>,
+}
+
+impl LaneWork for Turn<'_> {
+    type Output = UnitQuaternion<f64>;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> UnitQuaternion<f64> {
+        let (family, Tables { arm, rollout, .. }) = (self.problem.family(), self.problem.tables());
+        let net = rollout.net_rotation::<T>(arm, family, self.coefficients, self.joints);
+        let mount = UnitQuaternion::from_rotation_matrix(arm.mount());
+        mount * UnitQuaternion::from(net) * mount.inverse()
+    }
+}
