@@ -289,7 +289,8 @@ proptest! {
         }
     }
 
-    /// No denser look finds a higher peak, and none is invented, with up to eight terms.
+    /// No denser look finds a higher peak, and none is invented, with up to eight terms. The look itself
+    /// misses a peak by no more than its bend over half the way between two looks.
     #[test]
     fn peaks_are_those_of_a_dense_look(
         unit in prop::collection::vec(-1.0..1.0, 48),
@@ -304,15 +305,24 @@ proptest! {
             unit[..dimension].iter().zip(widths).map(|(u, width)| u * width).collect();
         let path = problem.family().path(&coefficients);
         let samples: Vec<Vec<_>> = path.joints().map(|joint| {
-            (0..=20_000).map(|i| joint.derivatives::<5>(f64::from(i) / 20_000.0)).collect()
+            (0..=20_000).map(|i| joint.derivatives::<6>(f64::from(i) / 20_000.0)).collect()
         }).collect();
+        let half = 0.5 / 20_000.0;
         for intervals in [problem.accuracy().peak_intervals, Accuracy::FINE.peak_intervals] {
             let Peaks(peaks) = Peaks::of(problem.family(), &coefficients, intervals);
             for ((joint, samples), peaks) in path.joints().zip(&samples).zip(peaks) {
                 for (k, peak) in peaks.into_iter().enumerate() {
-                    let dense = samples.iter().map(|s| s[k + 1].abs()).fold(0.0, f64::max);
+                    let largest = |order: usize| {
+                        samples.iter().map(|s: &[f64; 6]| s[order].abs()).fold(0.0, f64::max)
+                    };
+                    let dense = largest(k + 1);
                     let error = (peak.value - dense) / dense;
-                    prop_assert!((-1e-12..1e-6).contains(&error), "order {}: {error:e}", k + 1);
+                    let missed = 1.01 * largest(k + 3) * half * half / 2.0 / dense;
+                    prop_assert!(
+                        (-1e-12..missed + 1e-12).contains(&error),
+                        "order {}: {error:e}, {missed:e}",
+                        k + 1
+                    );
                     let there = joint.derivatives::<5>(peak.tau)[k + 1].abs();
                     prop_assert!((there - peak.value).abs() < 1e-12 * dense);
                 }
