@@ -155,7 +155,7 @@ fn evaluations(paper: &Paper) {
     take_turns(&mut lines);
 
     let columns = widths.iter().map(|width| format!(" {} |", width.name()));
-    println!("| microseconds for one |{}", columns.collect::<String>());
+    println!("| microseconds for one of these |{}", columns.collect::<String>());
     println!("|---|{}", "---|".repeat(widths.len()));
     for group in lines.chunks(widths.len()) {
         let mut row = format!("| {} | {:.2} |", group[0].name, group[0].median());
@@ -248,7 +248,11 @@ fn convex(paper: &Paper) {
     let worst = until.iter().copied().fold(0.0, f64::max);
     println!("| `scp`, {SEEDS} seeds | milliseconds |");
     println!("|---|---|");
-    println!("| one start, median of {} | {:.2} |", each.len(), median(each.clone()));
+    println!(
+        "| one start, median of the {} that they needed | {:.2} |",
+        each.len(),
+        median(each.clone())
+    );
     println!("| starts until J ≤ 0.781850, median | {:.2} |", median(until));
     println!("| starts until J ≤ 0.781850, worst | {worst:.1} |\n");
 }

@@ -108,8 +108,8 @@ impl Plan {
         let residual = found.assessment.residual().to_degrees();
         if residual > GOAL_REACHED_DEG {
             eprintln!(
-                "warning: the base ends {residual:.3}° from its goal; more terms, a wider box, a larger \
-                 budget or a larger `weights.base` may bring it there"
+                "warning: the base ends {residual:.3}° from its goal; more terms, another optimiser, such \
+                 as a hybrid, a larger budget or a larger `weights.base` may bring it there"
             );
         }
         self.say_entry(&found, file.task);
