@@ -42,7 +42,7 @@ impl Rollout {
     pub fn new(family: &Family, steps: usize) -> Self {
         let panels = steps.div_ceil(STEPS);
         let places = nodes();
-        let times = (0..panels.next_multiple_of(MOST)).step_by(MOST).flat_map(|first| {
+        let times = (0..panels).step_by(MOST).flat_map(|first| {
             places.into_iter().flat_map(move |place| {
                 (first..first + MOST).map(move |panel| {
                     if panel < panels { (panel as f64 + place) / panels as f64 } else { 0.0 }
@@ -52,21 +52,10 @@ impl Rollout {
         Self { panels, grid: Grid::new(family, times), moments: moments(&places, panels) }
     }
 
-    /// The number of evaluations of the base's rate that matter.
-    pub fn nodes(&self) -> usize {
-        self.panels * NODES
-    }
-
     /// Where in the grid the panels from `first` on have their times of a node.
     #[inline(always)]
     pub(super) fn place(first: usize, node: usize) -> usize {
         (first / MOST * NODES + node) * MOST + first % MOST
-    }
-
-    /// Numbers of the first panel of every group of [`MOST`].
-    #[inline(always)]
-    pub(super) fn groups(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
-        (0..self.panels.next_multiple_of(MOST)).step_by(MOST)
     }
 
     /// The rotation of the base over the whole path, from its attitude at the start, **along the mount's
@@ -83,7 +72,7 @@ impl Rollout {
     ) -> Quat<f64> {
         joints.resize(NODES * family.joints(), JointState::default());
         let mut net = Quat::identity();
-        for group in self.groups() {
+        for group in (0..self.panels).step_by(MOST) {
             let mut panels = [Quat::identity(); MOST];
             for part in (0..MOST).step_by(T::COUNT).take_while(|part| group + part < self.panels) {
                 self.drive::<T>(arm, family, coefficients, group + part, joints);

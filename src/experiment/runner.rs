@@ -31,23 +31,19 @@ pub fn run(
     // Each thread takes the next run. Shared out as tasks of the pool, a run could begin within another's:
     // polars has threads of its own, and a worker that waits for them takes up whatever task there is.
     let next = AtomicUsize::new(0);
-    let outcomes = pool.broadcast(|_| {
+    let work = || -> Result<(), StoreError> {
         while let Some(run) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let done = one(plan, run, watch).and_then(|record| {
-                record.map(|record| store.write(&record).map(|()| record)).transpose()
-            });
-            match done {
-                Ok(Some(record)) => progress.finished(run, &record),
-                Ok(None) => {}
-                Err(error) => {
-                    next.store(missing.len(), Ordering::Relaxed);
-                    return Err(error.into());
-                }
+            if let Some(record) = one(plan, run, watch)? {
+                store.write(&record)?;
+                progress.finished(run, &record);
             }
         }
         Ok(())
-    });
-    outcomes.into_iter().collect()
+    };
+    // After a failure no thread begins another run.
+    let outcomes =
+        pool.broadcast(|_| work().inspect_err(|_| next.store(missing.len(), Ordering::Relaxed)));
+    Ok(outcomes.into_iter().collect::<Result<(), _>>()?)
 }
 
 /// Why running came to an end.

@@ -1,6 +1,6 @@
 //! The base's angular velocity alone, the inner loop of everything: one inward sweep.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::RigidBody;
 use crate::robot::{Joint, Robot};
@@ -19,7 +19,7 @@ pub struct Arm {
     links: Vec<ArmLink>,
     /// Base, about the mount in the axes of the mount; its mass is that of the whole system.
     base: RigidBody<f64>,
-    mount: Rotation3<f64>,
+    mount: UnitQuaternion<f64>,
 }
 
 /// What of a link no configuration changes, in its proximal frame turned by the DH offset.
@@ -87,12 +87,13 @@ impl Arm {
         let mount = robot.mount_rotation;
         let base =
             body(robot.base.mass, mount.inverse() * -robot.mount, &robot.base.inertia, &mount);
-        Self { links, base: RigidBody { mass: base.mass + outer_mass, ..base }, mount }
+        let base = RigidBody { mass: base.mass + outer_mass, ..base };
+        Self { links, base, mount: UnitQuaternion::from_rotation_matrix(&mount) }
     }
 
     /// Turns vectors along the mount's axes into base axes.
-    pub fn mount(&self) -> &Rotation3<f64> {
-        &self.mount
+    pub fn mount(&self) -> UnitQuaternion<f64> {
+        self.mount
     }
 
     /// The links, from the base outward; a sweep takes them the other way round.
@@ -104,12 +105,11 @@ impl Arm {
     /// the whole arm lies outward.
     #[inline(always)]
     pub fn base_rate<T: Scalar>(&self, arm: Outer<T>) -> Vec3<T> {
-        let Outer { mut first_moment, mut inertia, linear, angular } = arm;
-        first_moment += self.base.first_moment.lift();
-        inertia += self.base.inertia.lift();
-        let centre = first_moment.times(1.0 / self.base.mass);
-        inertia -= Sym3::point(centre, first_moment);
-        let (adjugate, determinant) = inertia.adjugate();
+        let Outer { first_moment, inertia, linear, angular } = arm;
+        let mut system = RigidBody { mass: self.base.mass, first_moment, inertia };
+        system.first_moment += self.base.first_moment.lift();
+        system.inertia += self.base.inertia.lift();
+        let (centre, (adjugate, determinant)) = system.about_centre();
         (adjugate * (centre.cross(linear) - angular)) * (T::of(1.0) / determinant)
     }
 }

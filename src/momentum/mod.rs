@@ -188,12 +188,18 @@ impl<T: Scalar> RigidBody<T> {
     /// Ready to answer what twist of the whole balances a momentum.
     #[inline(always)]
     fn balance(&self) -> Balance<T> {
+        let (centre, (adjugate, determinant)) = self.about_centre();
+        let inverse = adjugate * (T::of(1.0) / determinant);
+        Balance { per_mass: 1.0 / self.mass, centre, inverse }
+    }
+
+    /// The centre of mass, and adjugate and determinant of the inertia about it.
+    #[inline(always)]
+    fn about_centre(&self) -> (Vec3<T>, (Sym3<T>, T)) {
         let centre = self.first_moment.times(1.0 / self.mass);
         let mut inertia = self.inertia;
         inertia -= Sym3::point(centre, self.first_moment);
-        let (adjugate, determinant) = inertia.adjugate();
-        let inverse = adjugate * (T::of(1.0) / determinant);
-        Balance { per_mass: 1.0 / self.mass, centre, inverse }
+        (centre, inertia.adjugate())
     }
 }
 

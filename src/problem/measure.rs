@@ -121,7 +121,7 @@ impl LaneWork for Turn<'_> {
     fn run<T: Lanes>(self) -> UnitQuaternion<f64> {
         let (family, Tables { arm, rollout, .. }) = (self.problem.family(), self.problem.tables());
         let net = rollout.net_rotation::<T>(arm, family, self.coefficients, self.joints);
-        let mount = UnitQuaternion::from_rotation_matrix(arm.mount());
+        let mount = arm.mount();
         mount * UnitQuaternion::from(net) * mount.inverse()
     }
 }

@@ -78,7 +78,7 @@ impl<'a> Path<'a> {
     /// Writes every joint's angle \[rad\] and its derivative by `τ` \[rad\].
     pub fn angles_and_rates(&self, tau: f64, angles: &mut [f64], rates: &mut [f64]) {
         for ((angle, rate), joint) in angles.iter_mut().zip(rates).zip(self.joints()) {
-            let at = joint.at_phase(joint.phase(tau));
+            let at = joint.span.at_phase(phase(joint.span, joint.free, tau));
             (*angle, *rate) = (at.angle, at.rate);
         }
     }
@@ -86,7 +86,7 @@ impl<'a> Path<'a> {
 
 /// A joint's angle and rate at a phase.
 #[derive(Debug, Clone, Copy)]
-pub struct AtPhase<T> {
+pub(crate) struct AtPhase<T> {
     /// `θ` \[rad\].
     pub angle: T,
     /// `θ'`, by `τ` \[rad\].
@@ -147,16 +147,6 @@ impl<'a> JointPath<'a> {
         self.span.rates(phase(self.span, self.free, tau))
     }
 
-    /// Phase and its derivative by `τ` (eq. 24).
-    pub fn phase(&self, tau: f64) -> [f64; 2] {
-        phase(self.span, self.free, tau)
-    }
-
-    /// Angle and rate at a phase with its derivative, and how they follow the phase.
-    pub fn at_phase(&self, phase: [f64; 2]) -> AtPhase<f64> {
-        self.span.at_phase(phase)
-    }
-
     /// Angle \[rad\] and its first derivatives by `τ`, at most five: eqs. 11–14, eq. 13 with the square
     /// it lacks, and two more.
     pub fn derivatives<const N: usize>(&self, tau: f64) -> [f64; N] {
@@ -202,7 +192,7 @@ impl<'a> JointPath<'a> {
     }
 }
 
-/// Phase and its first derivatives by `τ`: the step `σ` scaled to the phase's change, and the window
+/// Phase and its first derivatives by `τ` (eq. 24): the step `σ` scaled to the phase's change, and the window
 /// `(1 − x²)³` times the polynomial of the free part, `x = 2τ − 1`.
 fn phase<const N: usize>(span: &Span, free: &[f64], tau: f64) -> [f64; N] {
     let step: [f64; N] = step(tau);

@@ -62,20 +62,27 @@ impl Peaks {
     /// The shortest duration within the limits, in closed form \[s\]:
     /// `max(max|θ'|/v̄, √(max|θ''|/ā), ∛(max|θ'''|/j̄))`.
     pub fn shortest_duration(&self, limits: &Limits) -> f64 {
-        longest_asked(self.largest_ratio(limits))
+        longest_asked(limits.largest_ratio(self.heights()))
     }
 
     /// `F` of eqs. 26–28: the largest relative excess over the joints, zero when inside.
     pub fn excess(&self, limits: &Limits) -> [f64; 3] {
-        excess(self.largest_ratio(limits))
+        excess(limits.largest_ratio(self.heights()))
     }
 
-    /// Of each order the largest peak as a multiple of its limit.
-    fn largest_ratio(&self, limits: &Limits) -> [f64; 3] {
+    fn heights(&self) -> impl Iterator<Item = [f64; 3]> {
+        self.0.iter().map(|peaks| peaks.map(|peak| peak.value))
+    }
+}
+
+impl Limits {
+    /// Of each order the largest value as a multiple of its limit, from the joints' values.
+    #[inline(always)]
+    pub(super) fn largest_ratio(&self, values: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
         let mut largest = [0.0; 3];
-        for (peak, limit) in self.0.iter().zip(&limits.0) {
+        for (value, limit) in values.zip(&self.0) {
             for k in 0..3 {
-                largest[k] = f64::max(largest[k], peak[k].value / limit[k]);
+                largest[k] = f64::max(largest[k], value[k] / limit[k]);
             }
         }
         largest

@@ -159,7 +159,7 @@ impl Samples {
         coefficients: &[f64],
         room: &mut ArchRoom,
     ) -> [f64; 3] {
-        let mut known = self.sampled_ratio(limits);
+        let mut known = limits.largest_ratio(self.largest.iter().copied());
         let mut floor = matters(known);
         let ArchRoom { arches, powers } = room;
         arches.clear();
@@ -188,22 +188,10 @@ impl Samples {
         known
     }
 
-    /// Of each order the largest sample as a multiple of its limit.
-    #[inline(always)]
-    fn sampled_ratio(&self, limits: &Limits) -> [f64; 3] {
-        let mut ratio = [0.0; 3];
-        for (largest, limit) in self.largest.iter().zip(&limits.0) {
-            for k in 0..3 {
-                ratio[k] = f64::max(ratio[k], largest[k] / limit[k]);
-            }
-        }
-        ratio
-    }
-
     /// All local maxima that ask for a duration not below `share` of the longest asked for.
     pub fn local_peaks(&self, path: &Path<'_>, limits: &Limits, share: f64) -> Vec<LocalPeak> {
         let mut asked: Vec<(LocalPeak, f64)> = Vec::new();
-        let least = share * longest_asked(self.sampled_ratio(limits));
+        let least = share * longest_asked(limits.largest_ratio(self.largest.iter().copied()));
         for (joint, part) in path.joints().enumerate() {
             for order in 1..=3 {
                 let limit = limits.0[joint][order - 1];

@@ -1,14 +1,7 @@
 #!/usr/bin/env bash
 # Compares the base's rollout with one in C++ on Pinocchio: ./run.sh [ROUNDS]. Needs Python 3.11 or
 # later, g++ and PyPI. All run on one core, CPU=1 unless set otherwise, with one thread each.
-set -euo pipefail
-here=$(cd "$(dirname "$0")" && pwd)
-cd "$here/../../.."
-target=${CARGO_TARGET_DIR:-target}
-folder=$target/peers/pinocchio
-python=$folder/venv/bin/python
-[ -x "$python" ] || python3 -m venv "$folder/venv"
-"$python" -m pip install --quiet --disable-pip-version-check -r "$here/requirements.txt"
+. "$(dirname "$0")/../environment.sh"
 include=$("$python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/cmeel.prefix/include
 # Headers alone: what the library has compiled is not compiled for this processor. The definitions are
 # those that Pinocchio's own build files ask for; warnings are about its headers.
@@ -23,6 +16,5 @@ compile() {
 compile "$folder/rollout"
 compile "$folder/rollout-fast-math" -ffast-math -DEIGEN_DONT_VECTORIZE
 cargo build --release --locked --no-default-features --example rollout
-export PYTHONDONTWRITEBYTECODE=1
 ours=$target/release/examples/rollout
 taskset -c "${CPU:-1}" "$python" "$here/compare.py" "$ours" "$folder" "${1:-30}"
