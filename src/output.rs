@@ -48,6 +48,13 @@ pub fn create_folder(path: &Path) -> Result<(), FileError> {
     })
 }
 
+/// Waits until what was renamed into a folder is on the disk under its new name.
+pub fn sync_folder(path: &Path) -> Result<(), FileError> {
+    let error = |source| FileError { action: "flush", path: path.to_owned(), source };
+    // Elsewhere a folder is nothing that can be opened.
+    if cfg!(unix) { fs::File::open(path).and_then(|folder| folder.sync_all()).map_err(error) } else { Ok(()) }
+}
+
 /// Temporary files are private by default; a result is for everybody whom the umask lets read.
 fn readable_by_all() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();

@@ -90,13 +90,14 @@ fn plan(mood: Mood, always: bool, budget: u64) -> (Plan, Arc<Fickle>) {
     (plan, problem)
 }
 
-const COLUMNS: [&str; 39] = [
+const COLUMNS: [&str; 42] = [
     "format",
     "key",
     "recipe",
     "experiment",
     "problem",
     "instance",
+    "group",
     "optimiser",
     "formulation",
     "settings",
@@ -119,6 +120,7 @@ const COLUMNS: [&str; 39] = [
     "penalty",
     "coefficients",
     "evaluations",
+    "first_feasible",
     "linearisations",
     "curvatures",
     "conic_solves",
@@ -129,6 +131,7 @@ const COLUMNS: [&str; 39] = [
     "message",
     "version",
     "commit",
+    "cpu",
     "date",
 ];
 
@@ -240,7 +243,7 @@ fn every_run_leaves_a_record_whatever_the_problem_does() {
             let counted: u64 = (0..runs.height()).map(|i| whole(&runs, "evaluations", i)).sum();
             assert_eq!(counted, problem.calls.load(Ordering::Relaxed), "{mood:?}, {budget}");
             assert_eq!(run(&plan, &store), 0, "done again");
-            let stored = analysis::runs(&plan, &runs).unwrap();
+            let stored = analysis::load(&plan, &store).unwrap();
             let summary = analysis::summary(&plan, &stored).unwrap();
             assert_eq!(summary.height(), plan.optimisers.len());
         }
@@ -259,7 +262,9 @@ fn many_short_runs_are_stored() {
     let random = [Settings::by_name("random").unwrap()];
     let plan = Plan::over("many", vec![instance], &random, number(600), number(5));
     assert_eq!(run(&plan, &store), 600);
-    assert!(plan.runs.iter().all(|run| store.has(&run.key)));
+    let stored = store.keys().unwrap();
+    assert!(plan.runs.iter().all(|run| stored.contains(&run.key)));
+    assert!(store.batch_count().unwrap() < 10);
 }
 
 /// Costs its number of calls so far; panics at one call.

@@ -1,9 +1,5 @@
 //! Best cost against evaluations, over the seeds.
 
-use std::collections::HashMap;
-
-use polars::prelude::*;
-
 use super::runs::{Run, groups};
 use super::summary::quantile;
 use crate::experiment::Plan;
@@ -28,41 +24,18 @@ const POINTS: usize = 200;
 ///
 /// A curve holds where every run of the group still counts: up to the smallest budget among them. A
 /// run that ended early keeps the best it had.
-pub fn convergence(plan: &Plan, runs: &[Run], traces: &DataFrame) -> PolarsResult<Vec<Curve>> {
-    let steps = steps(traces)?;
-    Ok(groups(plan, runs).iter().map(|group| curve(plan, group, &steps)).collect())
+pub fn convergence(plan: &Plan, runs: &[Run]) -> Vec<Curve> {
+    groups(plan, runs).iter().map(|group| curve(plan, group)).collect()
 }
 
-/// The rows of a run's trace: evaluation and best cost.
-type Trace = Vec<(f64, f64)>;
-
-/// Evaluation and best cost of every row of the traces, by run.
-fn steps(traces: &DataFrame) -> PolarsResult<HashMap<String, Trace>> {
-    let mut steps: HashMap<String, Trace> = HashMap::new();
-    if traces.height() == 0 {
-        return Ok(steps);
-    }
-    let keys = traces.column("key")?.str()?;
-    let evaluations = traces.column("evaluation")?.u64()?;
-    let costs = traces.column("j")?.f64()?;
-    for i in 0..traces.height() {
-        if let (Some(key), Some(n), Some(j)) = (keys.get(i), evaluations.get(i), costs.get(i)) {
-            steps.entry(key.to_owned()).or_default().push((n as f64, j));
-        }
-    }
-    Ok(steps)
-}
-
-fn curve(plan: &Plan, group: &[&Run], steps: &HashMap<String, Trace>) -> Curve {
+fn curve(plan: &Plan, group: &[&Run]) -> Curve {
     let budget = group.iter().map(|run| run.budget).min().unwrap_or(1);
-    let traces = group.iter().map(|run| steps.get(&run.key).map_or(&[][..], Vec::as_slice));
-    let traces: Vec<_> = traces.collect();
     let last = (budget as f64).ln();
     let mut evaluations: Vec<f64> =
         (0..POINTS).map(|i| (last * i as f64 / (POINTS - 1) as f64).exp().round()).collect();
     evaluations.dedup();
     let quartiles = evaluations.iter().map(|&place| {
-        let mut costs: Vec<f64> = traces.iter().map(|trace| best_at(trace, place)).collect();
+        let mut costs: Vec<f64> = group.iter().map(|run| run.best_at(place as u64)).collect();
         costs.sort_by(f64::total_cmp);
         [0.25, 0.5, 0.75].map(|q| quantile(&costs, q))
     });
@@ -72,10 +45,4 @@ fn curve(plan: &Plan, group: &[&Run], steps: &HashMap<String, Trace>) -> Curve {
         quartiles: quartiles.collect(),
         evaluations,
     }
-}
-
-/// Best cost after so many evaluations; infinite before the first.
-fn best_at(trace: &[(f64, f64)], place: f64) -> f64 {
-    let made = trace.partition_point(|(evaluation, _)| *evaluation <= place);
-    made.checked_sub(1).map_or(f64::INFINITY, |i| trace[i].1)
 }

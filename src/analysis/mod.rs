@@ -2,10 +2,12 @@
 
 mod convergence;
 mod runs;
+mod standing;
 mod summary;
 mod table;
 
 pub use convergence::{Curve, convergence};
-pub use runs::{Run, best_run, runs};
+pub use runs::{Run, Step, best_run, load};
+pub use standing::{Failure, Standing, Tally, standing};
 pub use summary::summary;
 pub use table::render;

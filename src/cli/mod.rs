@@ -8,13 +8,21 @@ macro_rules! say {
 }
 
 mod check;
+#[cfg(feature = "harness")]
+mod compact;
 mod list;
 mod motion;
 mod plan;
 mod progress;
 mod replay;
 #[cfg(feature = "harness")]
+mod report;
+#[cfg(feature = "harness")]
+mod results;
+#[cfg(feature = "harness")]
 mod run;
+#[cfg(feature = "harness")]
+mod status;
 
 use std::fmt;
 use std::io::{self, Write as _};
@@ -49,6 +57,15 @@ enum Verb {
     /// Run an experiment: every optimiser on every instance for every seed
     #[cfg(feature = "harness")]
     Run(run::Run),
+    /// Say which runs of an experiment are done, failed or missing
+    #[cfg(feature = "harness")]
+    Status(status::Status),
+    /// Make tables and figures from what is stored
+    #[cfg(feature = "harness")]
+    Report(report::Report),
+    /// Merge many small files of results into few, while others run or read
+    #[cfg(feature = "harness")]
+    Compact(compact::Compact),
     /// Find the best motion for one task
     Plan(plan::Plan),
     /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
@@ -127,6 +144,12 @@ pub fn main() -> ExitCode {
     let outcome = match cli.verb {
         #[cfg(feature = "harness")]
         Verb::Run(run) => run.execute(),
+        #[cfg(feature = "harness")]
+        Verb::Status(status) => status.execute(),
+        #[cfg(feature = "harness")]
+        Verb::Report(report) => report.execute(),
+        #[cfg(feature = "harness")]
+        Verb::Compact(compact) => compact.execute(),
         Verb::Plan(plan) => plan.execute(),
         Verb::Replay(replay) => replay.execute(),
         Verb::List(list) => list.execute(),

@@ -6,15 +6,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::progress::Bar;
+use super::report::report;
+use super::results::EXPERIMENT;
 use super::{CliError, read_or, warn_of, watch};
-use crate::analysis::{self, best_run, convergence, render, summary};
 use crate::experiment::{
     self, ExperimentFile, Instance, Plan, Progress, Record, RunSpec, Shard, Store,
 };
 use crate::input::Document;
 use crate::output::write_file;
-use crate::plot;
-use crate::problem::{BestKnown, Motion};
 use crate::robot::RobotFile;
 
 /// Run an experiment: every optimiser on every instance for every seed
@@ -42,6 +41,9 @@ pub(super) struct Run {
     #[arg(long)]
     fresh: bool,
 }
+
+/// More files than that are merged, since reading them would take long.
+const MANY_BATCHES: usize = 1_000;
 
 /// Prints a line for every run that ends.
 struct Lines<'a> {
@@ -91,9 +93,10 @@ impl Run {
         let places = plan.runs.iter().enumerate();
         let mine: Vec<&RunSpec> = places.filter(|(i, _)| mine(*i)).map(|(_, run)| run).collect();
         if self.fresh {
-            store.remove(mine.iter().map(|run| &run.key))?;
+            store.remove(&mine.iter().map(|run| run.key.as_str()).collect())?;
         }
-        let missing = mine.iter().filter(|run| !store.has(&run.key));
+        let stored = store.keys()?;
+        let missing = mine.iter().filter(|run| !stored.contains(&run.key));
         let (count, evaluations) = missing.fold((0, 0), |(n, sum), run| (n + 1, sum + run.budget));
         if count < mine.len() {
             eprintln!("{} of {} runs are stored already", mine.len() - count, mine.len());
@@ -103,8 +106,12 @@ impl Run {
             let bar = Bar::new(evaluations, watch.clone());
             experiment::run(plan, &mine, store, jobs, &watch, &Lines { bar: &bar, plan })?;
         }
+        if store.batch_count()? > MANY_BATCHES {
+            store.compact()?;
+        }
         if watch.is_interrupted() {
-            let stored = mine.iter().filter(|run| store.has(&run.key)).count();
+            let stored = store.keys()?;
+            let stored = mine.iter().filter(|run| stored.contains(&run.key)).count();
             return Err(CliError::Interrupted(format!(
                 "{stored} of {} runs are stored in {}; the same command goes on from there",
                 mine.len(),
@@ -127,7 +134,7 @@ fn keep_inputs(
         write_file(&folder.join("robot.toml"), toml::to_string(&robot)?.as_bytes())?;
         file.task = file.task.map(|task| task.with_robot("robot.toml"));
     }
-    let (path, text) = (folder.join("experiment.toml"), toml::to_string(&file)?);
+    let (path, text) = (folder.join(EXPERIMENT), toml::to_string(&file)?);
     if std::fs::read_to_string(&path).is_ok_and(|before| before != text) {
         eprintln!(
             "note: {} holds runs of another version of this experiment; they stay there, and those \
@@ -136,48 +143,6 @@ fn keep_inputs(
         );
     }
     Ok(write_file(&path, text.as_bytes())?)
-}
-
-/// Prints the summary of all stored runs of the plan and draws them.
-fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
-    let keys = || plan.runs.iter().map(|run| run.key.as_str());
-    let runs = analysis::runs(plan, &store.read("runs", keys())?)?;
-    if runs.len() < plan.runs.len() {
-        say!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
-    }
-    say!("{}", render(&summary(plan, &runs)?)?);
-    let figures = folder.join("figures");
-    let curves = convergence(plan, &runs, &store.read("traces", keys())?)?;
-    plot::convergence(&curves, plan.cost_symbol()).save(&figures, "convergence")?;
-    for (i, instance) in plan.instances.iter().enumerate() {
-        let (Some(problem), Some(best)) =
-            (instance.reorientation(), best_run(runs.iter().filter(|run| run.instance == i)))
-        else {
-            continue;
-        };
-        let optimiser = &plan.optimisers[best.optimiser].label;
-        let known = BestKnown::of(problem)
-            .map_or_else(String::new, |known| format!(" ({})", known.compared_with(best.cost)));
-        let on = if instance.label.is_empty() { "" } else { " for " };
-        say!(
-            "best motion{on}{}: {optimiser}, seed {}: J {:.6}{known}, t_f {:.4} s",
-            instance.label,
-            best.seed,
-            best.cost,
-            best.duration
-        );
-        // Costs of different instances do not compare, so there is no best of all to draw.
-        if plan.instances.len() == 1 {
-            let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
-            plot::write_motion_figures(&figures, &motion, problem.task())?;
-        }
-    }
-    say!("results: {}, figures: {}", folder.display(), figures.display());
-    let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
-    if failed > 0 {
-        eprintln!("warning: {failed} of {} runs failed or found nothing", runs.len());
-    }
-    Ok(())
 }
 
 /// Says what is unphysical about an experiment's robot.

@@ -17,5 +17,5 @@ pub use instance::{Instance, Subject};
 pub use plan::{Entrant, Plan, RunSpec, Shard};
 pub use record::{Record, Status};
 pub use runner::{Progress, RunError, run};
-pub use store::{Store, StoreError, write_table};
+pub use store::{Compaction, Store, StoreError};
 pub use targets::Targets;

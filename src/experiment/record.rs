@@ -1,5 +1,6 @@
 //! What is kept of a run, and the columns it is kept in.
 
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use chrono::Utc;
@@ -83,23 +84,26 @@ pub(super) struct Ended<'a> {
     /// The best point's motion, certified: its coefficients and what is known of it.
     pub(super) motion: Option<(Vec<f64>, Assessment)>,
     pub(super) seconds: Duration,
+    /// How many runs were made at a time.
+    pub(super) threads: usize,
     pub(super) oracle: Oracle<'a>,
 }
 
 /// Version of the stored tables; raised when a column changes.
-pub(super) const FORMAT: u64 = 4;
+pub(super) const FORMAT: u64 = 5;
 
 impl Record {
     pub(super) fn new(plan: &Plan, run: &RunSpec, ended: Ended<'_>) -> PolarsResult<Self> {
         let cost = ended.cost(plan, run);
         let row = row(plan, run, cost, &ended)?;
+        let threads = ended.threads;
         let trace = ended.oracle.into_trace();
         Ok(Self {
             key: run.key.clone(),
             cost: cost.unwrap_or(f64::NAN),
             status: ended.status,
             row,
-            clock: clock_table(&run.key, &trace)?,
+            clock: clock_table(&run.key, &trace, threads)?,
             trace: trace_table(&run.key, &trace)?,
         })
     }
@@ -124,7 +128,7 @@ fn row(
     cost: Option<f64>,
     ended: &Ended<'_>,
 ) -> PolarsResult<DataFrame> {
-    let Ended { status, motion, seconds, oracle } = ended;
+    let Ended { status, motion, seconds, threads: _, oracle } = ended;
     let entrant = &plan.optimisers[run.optimiser];
     let instance = &plan.instances[run.instance];
     let problem = instance.reorientation();
@@ -140,6 +144,7 @@ fn row(
         "experiment" => [plan.name.as_str()],
         "problem" => [instance.subject.name()],
         "instance" => [instance.label.as_str()],
+        "group" => [instance.group.as_str()],
         "optimiser" => [entrant.label.as_str()],
         "formulation" => [problem.map(|_| entrant.settings.formulation().name())],
         "settings" => [settings],
@@ -162,6 +167,7 @@ fn row(
         "penalty" => [found(Assessment::penalty)],
         "coefficients" => list(motion.as_ref().map(|(coefficients, _)| coefficients)),
         "evaluations" => [oracle.evaluations()],
+        "first_feasible" => [oracle.first_feasible()],
         "linearisations" => [oracle.linearisations()],
         "curvatures" => [oracle.curvatures()],
         "conic_solves" => [oracle.conic_solves()],
@@ -172,6 +178,7 @@ fn row(
         "message" => [status.message()],
         "version" => [env!("CARGO_PKG_VERSION")],
         "commit" => [git_version::git_version!(args = ["--always", "--dirty"], fallback = "unknown")],
+        "cpu" => [cpu()],
         "date" => [Utc::now().to_rfc3339()],
     )
 }
@@ -204,11 +211,26 @@ fn trace_table(key: &str, trace: &[TracePoint]) -> PolarsResult<DataFrame> {
     )
 }
 
-/// The `clocks` table: when each row of the trace was reached \[s\].
-fn clock_table(key: &str, trace: &[TracePoint]) -> PolarsResult<DataFrame> {
+/// The `clocks` table: when each row of the trace was reached \[s\], and how many runs were made at a time.
+fn clock_table(key: &str, trace: &[TracePoint], threads: usize) -> PolarsResult<DataFrame> {
     df!(
         "key" => vec![key; trace.len()],
         "evaluation" => trace.iter().map(|p| p.evaluation).collect::<Vec<_>>(),
         "seconds" => trace.iter().map(|p| p.elapsed.as_secs_f64()).collect::<Vec<_>>(),
+        "threads" => vec![threads as u64; trace.len()],
     )
+}
+
+/// What the processor calls itself, or its architecture.
+fn cpu() -> &'static str {
+    static NAME: LazyLock<String> = LazyLock::new(|| {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let name = raw_cpuid::CpuId::new().get_processor_brand_string();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let name = name.map(|name| name.as_str().trim().to_owned());
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let name = None;
+        name.unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+    });
+    &NAME
 }

@@ -1,7 +1,7 @@
 //! Runs what is missing, on as many threads as asked for.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::caught::caught;
 use super::record::Ended;
@@ -13,6 +13,11 @@ pub trait Progress: Sync {
     /// A run is stored.
     fn finished(&self, run: &RunSpec, record: &Record);
 }
+
+/// Runs that together are allowed fewer evaluations than this are stored as one batch.
+const EVALUATIONS_A_BATCH: u64 = 500;
+/// What is done waits no longer to be stored, however few evaluations it took.
+const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
 /// Does those of `runs` that the store does not have, on `jobs` threads.
 ///
@@ -26,24 +31,67 @@ pub fn run(
     watch: &Watch,
     progress: &dyn Progress,
 ) -> Result<(), RunError> {
-    let missing: Vec<_> = runs.iter().filter(|run| !store.has(&run.key)).collect();
+    let stored = store.keys()?;
+    let missing: Vec<_> = runs.iter().copied().filter(|run| !stored.contains(&run.key)).collect();
+    let batches = batches(&missing);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build()?;
-    // Each thread takes the next run. Shared out as tasks of the pool, a run could begin within another's:
+    // Each thread takes the next batch. Shared out as tasks of the pool, a run could begin within another's:
     // polars has threads of its own, and a worker that waits for them takes up whatever task there is.
     let next = AtomicUsize::new(0);
     let work = || -> Result<(), StoreError> {
-        while let Some(run) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-            if let Some(record) = one(plan, run, watch)? {
-                store.write(&record)?;
-                progress.finished(run, &record);
-            }
+        while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
+            run_batch(plan, batch, jobs, store, watch, progress)?;
         }
         Ok(())
     };
-    // After a failure no thread begins another run.
+    // After a failure no thread begins another batch.
     let outcomes =
-        pool.broadcast(|_| work().inspect_err(|_| next.store(missing.len(), Ordering::Relaxed)));
+        pool.broadcast(|_| work().inspect_err(|_| next.store(batches.len(), Ordering::Relaxed)));
     Ok(outcomes.into_iter().collect::<Result<(), _>>()?)
+}
+
+/// Cuts runs, in their order, into batches: long runs alone, short ones together.
+fn batches<'a>(mut runs: &'a [&'a RunSpec]) -> Vec<&'a [&'a RunSpec]> {
+    let mut batches = Vec::new();
+    while !runs.is_empty() {
+        let mut budgets = runs.iter().scan(0, |sum: &mut u64, run| {
+            *sum = sum.saturating_add(run.budget);
+            Some(*sum)
+        });
+        let full = budgets.position(|sum| sum >= EVALUATIONS_A_BATCH);
+        let (batch, others) = runs.split_at(full.map_or(runs.len(), |last| last + 1));
+        batches.push(batch);
+        runs = others;
+    }
+    batches
+}
+
+/// Does the runs of a batch and stores them.
+fn run_batch(
+    plan: &Plan,
+    batch: &[&RunSpec],
+    threads: usize,
+    store: &Store,
+    watch: &Watch,
+    progress: &dyn Progress,
+) -> Result<(), StoreError> {
+    let mut done = Vec::new();
+    let keep = |done: &mut Vec<(&RunSpec, Record)>| -> Result<(), StoreError> {
+        if !done.is_empty() {
+            store.write(done.iter().map(|(_, record)| record))?;
+            done.drain(..).for_each(|(run, record)| progress.finished(run, &record));
+        }
+        Ok(())
+    };
+    let mut waiting = Instant::now();
+    for run in batch {
+        done.extend(one(plan, run, threads, watch)?.map(|record| (*run, record)));
+        if waiting.elapsed() > LONGEST_WAIT {
+            keep(&mut done)?;
+            waiting = Instant::now();
+        }
+    }
+    keep(&mut done)
 }
 
 /// Why running came to an end.
@@ -58,7 +106,12 @@ pub enum RunError {
 }
 
 /// One run, unless it is interrupted.
-fn one(plan: &Plan, run: &RunSpec, watch: &Watch) -> Result<Option<Record>, StoreError> {
+fn one(
+    plan: &Plan,
+    run: &RunSpec,
+    threads: usize,
+    watch: &Watch,
+) -> Result<Option<Record>, StoreError> {
     if watch.is_interrupted() {
         return Ok(None);
     }
@@ -81,5 +134,5 @@ fn one(plan: &Plan, run: &RunSpec, watch: &Watch) -> Result<Option<Record>, Stor
     };
     // What the run did not spend will not be spent.
     watch.add_evaluations(oracle.remaining());
-    Ok(Some(Record::new(plan, run, Ended { status, motion, seconds, oracle })?))
+    Ok(Some(Record::new(plan, run, Ended { status, motion, seconds, threads, oracle })?))
 }

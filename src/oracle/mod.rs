@@ -86,6 +86,7 @@ pub struct Oracle<'a> {
     curvatures: u64,
     conic_solves: u64,
     conic_failures: u64,
+    first_feasible: Option<u64>,
     best: Option<Best>,
     /// The best of the search that is [`within`](Self::within).
     best_within: Option<Best>,
@@ -106,6 +107,7 @@ impl<'a> Oracle<'a> {
             curvatures: 0,
             conic_solves: 0,
             conic_failures: 0,
+            first_feasible: None,
             best: None,
             best_within: None,
             trace: Vec::new(),
@@ -145,6 +147,11 @@ impl<'a> Oracle<'a> {
     /// Conic subproblems given up.
     pub fn conic_failures(&self) -> u64 {
         self.conic_failures
+    }
+
+    /// The first evaluation within all limits.
+    pub fn first_feasible(&self) -> Option<u64> {
+        self.first_feasible
     }
 
     /// Time spent inside the problem.
@@ -290,6 +297,9 @@ impl<'a> Oracle<'a> {
         };
         if !evaluation.cost.is_finite() {
             return;
+        }
+        if self.first_feasible.is_none() && evaluation.violation <= 0.0 {
+            self.first_feasible = Some(self.evaluations);
         }
         if lower(&self.best_within) {
             self.best_within = Some(Best { x: x.to_vec(), evaluation });

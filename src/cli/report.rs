@@ -1,0 +1,67 @@
+//! `driftless report`.
+
+use std::path::Path;
+
+use clap::Args;
+
+use super::CliError;
+use super::results::ResultsFolder;
+use crate::analysis::{self, best_run, convergence, render, summary};
+use crate::experiment::{Plan, Store};
+use crate::plot;
+use crate::problem::{BestKnown, Motion};
+
+/// Make tables and figures from what is stored
+#[derive(Debug, Args)]
+pub(super) struct Report {
+    #[command(flatten)]
+    results: ResultsFolder,
+}
+
+impl Report {
+    pub(super) fn execute(self) -> Result<(), CliError> {
+        let results = self.results.open()?;
+        report(&results.plan, &results.store, &results.folder)
+    }
+}
+
+/// Prints the summary of all stored runs of the plan and draws them.
+pub(super) fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
+    let runs = analysis::load(plan, store)?;
+    if runs.len() < plan.runs.len() {
+        say!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
+    }
+    say!("{}", render(&summary(plan, &runs)?)?);
+    let figures = folder.join("figures");
+    let curves = convergence(plan, &runs);
+    plot::convergence(&curves, plan.cost_symbol()).save(&figures, "convergence")?;
+    for (i, instance) in plan.instances.iter().enumerate() {
+        let (Some(problem), Some(best)) =
+            (instance.reorientation(), best_run(runs.iter().filter(|run| run.instance == i)))
+        else {
+            continue;
+        };
+        let optimiser = &plan.optimisers[best.optimiser].label;
+        let known = BestKnown::of(problem)
+            .map_or_else(String::new, |known| format!(" ({})", known.compared_with(best.cost)));
+        let on = if instance.label.is_empty() { "" } else { " for " };
+        say!(
+            "best motion{on}{}: {optimiser}, seed {}: J {:.6}{known}, t_f {:.4} s",
+            instance.label,
+            best.seed,
+            best.cost,
+            best.duration
+        );
+        // Costs of different instances do not compare, so there is no best of all to draw.
+        if plan.instances.len() == 1 {
+            let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
+            plot::write_motion_figures(&figures, &motion, problem.task())?;
+        }
+    }
+    say!("results: {}, figures: {}", folder.display(), figures.display());
+    let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
+    if failed > 0 {
+        eprintln!("warning: {failed} of {} runs failed or found nothing", runs.len());
+    }
+    Ok(())
+}

@@ -1,0 +1,49 @@
+//! A folder of results, as the verbs that read it take it.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::CliError;
+use crate::experiment::{ExperimentFile, Plan, Store};
+use crate::input::Document;
+
+/// Where the results are.
+#[derive(Debug, Args)]
+pub(super) struct ResultsFolder {
+    /// Folder of results
+    #[arg(value_name = "DIR", default_value = "results/default")]
+    folder: PathBuf,
+}
+
+/// What a folder of results holds.
+pub(super) struct Results {
+    pub(super) folder: PathBuf,
+    pub(super) plan: Plan,
+    pub(super) store: Store,
+}
+
+impl ResultsFolder {
+    /// Reads the experiment that the folder keeps. Nothing is written.
+    pub(super) fn open(&self) -> Result<Results, CliError> {
+        let path = self.folder.join(EXPERIMENT);
+        if !path.exists() {
+            return Err(CliError::Usage {
+                message: format!("no results in {}: it has no {EXPERIMENT}", self.folder.display()),
+                help: Some("expected a folder that `driftless run` has filled".to_owned()),
+            });
+        }
+        let document = Document::read(&path)?;
+        let plan = Plan::new(&ExperimentFile::read(&document)?, &document)?;
+        Ok(Results { plan, store: Store::existing(&self.folder), folder: self.folder.clone() })
+    }
+}
+
+/// What `run` keeps the experiment in.
+pub(super) const EXPERIMENT: &str = "experiment.toml";
+
+/// The command that does what is missing from a folder.
+pub(super) fn command(folder: &Path) -> String {
+    let folder = folder.display();
+    format!("driftless run {folder}/{EXPERIMENT} --out {folder}")
+}

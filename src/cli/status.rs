@@ -1,0 +1,151 @@
+//! `driftless status`.
+
+use clap::Args;
+use polars::prelude::*;
+use serde::Serialize;
+
+use super::CliError;
+use super::results::{Results, ResultsFolder, command};
+use crate::analysis::{Failure, Standing, Tally, render, standing};
+
+/// Say which runs of an experiment are done, failed or missing
+#[derive(Debug, Args)]
+pub(super) struct Status {
+    #[command(flatten)]
+    results: ResultsFolder,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Failures that are shown one by one.
+const MOST_SHOWN: usize = 10;
+
+#[derive(Debug, Serialize)]
+struct Counts {
+    runs: usize,
+    stored: usize,
+    failed: usize,
+    missing: usize,
+}
+
+impl From<Tally> for Counts {
+    fn from(tally: Tally) -> Self {
+        let Tally { planned, stored, failed } = tally;
+        Self { runs: planned, stored, failed, missing: tally.missing() }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct StatusJson<'a> {
+    experiment: &'a str,
+    #[serde(flatten)]
+    all: Counts,
+    /// Stored runs of no use to this experiment.
+    others: usize,
+    batches: usize,
+    optimisers: Vec<EntrantJson<'a>>,
+    failures: Vec<FailureJson<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct EntrantJson<'a> {
+    optimiser: &'a str,
+    #[serde(flatten)]
+    counts: Counts,
+}
+
+#[derive(Debug, Serialize)]
+struct FailureJson<'a> {
+    key: &'a str,
+    optimiser: &'a str,
+    instance: &'a str,
+    seed: u64,
+    status: &'a str,
+    message: &'a str,
+}
+
+impl Status {
+    pub(super) fn execute(self) -> Result<(), CliError> {
+        let results = self.results.open()?;
+        let standing = standing(&results.plan, &results.store)?;
+        let batches = results.store.batch_count()?;
+        if self.json {
+            say!("{}", serde_json::json!(json(&results, &standing, batches)));
+            return Ok(());
+        }
+        tell(&results, &standing, batches)
+    }
+}
+
+fn json<'a>(results: &'a Results, standing: &'a Standing, batches: usize) -> StatusJson<'a> {
+    let plan = &results.plan;
+    let entrant = |(optimiser, tally): (usize, &Tally)| EntrantJson {
+        optimiser: &plan.optimisers[optimiser].label,
+        counts: (*tally).into(),
+    };
+    let failure = |failure: &'a Failure| {
+        let run = &plan.runs[failure.run];
+        FailureJson {
+            key: &run.key,
+            optimiser: &plan.optimisers[run.optimiser].label,
+            instance: &plan.instances[run.instance].label,
+            seed: run.seed,
+            status: &failure.status,
+            message: &failure.message,
+        }
+    };
+    StatusJson {
+        experiment: &plan.name,
+        all: standing.tallies.iter().copied().sum::<Tally>().into(),
+        others: standing.strangers,
+        batches,
+        optimisers: standing.tallies.iter().enumerate().map(entrant).collect(),
+        failures: standing.failures.iter().map(failure).collect(),
+    }
+}
+
+fn tell(results: &Results, standing: &Standing, batches: usize) -> Result<(), CliError> {
+    let (plan, tallies) = (&results.plan, &standing.tallies);
+    let all: Tally = tallies.iter().copied().sum();
+    let counts =
+        |value: fn(&Tally) -> usize| tallies.iter().map(|t| value(t) as u64).collect::<Vec<_>>();
+    let table = df!(
+        "optimiser" => plan.optimisers.iter().map(|o| o.label.as_str()).collect::<Vec<_>>(),
+        "runs" => counts(|t| t.planned),
+        "stored" => counts(|t| t.stored),
+        "failed" => counts(|t| t.failed),
+        "missing" => counts(|t| t.missing()),
+    )?;
+    say!("{}", render(&table)?);
+    say!(
+        "{}: {} of {} runs are stored, {} failed, {} missing; {batches} files a table",
+        plan.name,
+        all.stored,
+        all.planned,
+        all.failed,
+        all.missing()
+    );
+    for failure in standing.failures.iter().take(MOST_SHOWN) {
+        let run = &plan.runs[failure.run];
+        let (optimiser, instance) =
+            (&plan.optimisers[run.optimiser].label, &plan.instances[run.instance].label);
+        let space = if instance.is_empty() { "" } else { " " };
+        let message = failure.message.lines().next().unwrap_or_default();
+        say!(
+            "{}: {optimiser}{space}{instance} seed {}: {message}",
+            failure.status,
+            run.seed
+        );
+    }
+    if standing.failures.len() > MOST_SHOWN {
+        say!("… and {} more failed; --json lists all", standing.failures.len() - MOST_SHOWN);
+    }
+    if standing.strangers > 0 {
+        say!("{} other runs are stored: of another version of the experiment", standing.strangers);
+    }
+    if all.missing() > 0 {
+        say!("what is missing: {}", command(&results.folder));
+    }
+    Ok(())
+}
