@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use polars::prelude::*;
 
 use super::runs::{Run, groups};
-use super::summary::quantile;
+use super::statistics::quantile;
 use crate::experiment::Plan;
 
 /// Quartiles of the best cost so far over the seeds and the instances of a group.

@@ -2,6 +2,7 @@
 
 mod convergence;
 mod runs;
+pub mod statistics;
 mod summary;
 mod table;
 
