@@ -9,6 +9,7 @@ mod effect_size;
 mod friedman;
 mod holm;
 mod nemenyi;
+mod normal;
 mod profiles;
 mod quantile;
 mod ranks;

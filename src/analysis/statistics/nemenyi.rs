@@ -1,6 +1,6 @@
 //! Which mean ranks differ, all treatments compared with each other.
 
-use statrs::distribution::{Continuous, ContinuousCDF, Normal};
+use super::normal;
 
 /// Nemenyi's p-value of two treatments whose mean ranks over `blocks` blocks differ by `difference`, among
 /// `treatments` that are all compared with each other; already adjusted for that.
@@ -48,11 +48,10 @@ fn deviation(treatments: usize, blocks: usize) -> f64 {
 pub fn studentised_range_sf(q: f64, count: usize) -> f64 {
     const STEPS_TO_A_UNIT: i32 = 32;
     const END: i32 = 10;
-    let normal = Normal::standard();
     let others = count.saturating_sub(1) as f64;
     let density = |step: i32| {
         let z = f64::from(step) / f64::from(STEPS_TO_A_UNIT);
-        normal.pdf(z) * (normal.cdf(z) - normal.cdf(z - q)).powf(others)
+        normal::density(z) * (normal::cdf(z) - normal::cdf(z - q)).powf(others)
     };
     let steps = -END * STEPS_TO_A_UNIT..=END * STEPS_TO_A_UNIT;
     let within = steps.map(density).sum::<f64>() / f64::from(STEPS_TO_A_UNIT);

@@ -1,8 +1,6 @@
 //! Whether one of two treatments is better, pair by pair.
 
-use statrs::distribution::{ContinuousCDF, Normal};
-
-use super::average_ranks;
+use super::{average_ranks, normal};
 
 /// What Wilcoxon's signed-rank test says about pairs of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,5 +76,5 @@ fn exact_p(n: usize, lesser: f64) -> f64 {
 fn normal_p(ranks: &[f64], lesser: f64) -> f64 {
     let mean = ranks.iter().sum::<f64>() / 2.0;
     let variance = ranks.iter().map(|rank| rank * rank).sum::<f64>() / 4.0;
-    2.0 * Normal::standard().cdf((lesser - mean) / variance.sqrt())
+    2.0 * normal::cdf((lesser - mean) / variance.sqrt())
 }
