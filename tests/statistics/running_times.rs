@@ -130,7 +130,6 @@ fn profiles_are_those_of_optimagic() {
         for (profiles, drawn) in [(performance, "performance"), (data, "data")] {
             let drawn = Case(case.get(drawn).clone());
             for (profile, expected) in profiles.iter().zip(drawn.rows("shares")) {
-                let expected: Vec<f64> = expected;
                 case.assert_all_close(&shares(profile, &drawn.reals("at")), &expected);
             }
             assert_eq!(profiles.len(), reals(&case.get("times")[0]).len());
