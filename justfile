@@ -29,6 +29,10 @@ peers:
     benches/peers/optimisers/run.sh
     benches/peers/pinocchio/run.sh
 
+# the statistics beside SciPy and others; needs Python 3.11
+statistics:
+    tests/statistics/run.sh
+
 # the default experiment
 run:
     cargo run --release -- run

@@ -1,7 +1,7 @@
 //! Best cost against evaluations, over the seeds.
 
 use super::runs::{Run, groups};
-use super::summary::quantile;
+use super::statistics::quantile;
 use crate::experiment::Plan;
 
 /// Quartiles of the best cost so far over the seeds and the instances of a group.

@@ -1,13 +1,17 @@
 //! From stored runs to tables of what they say.
 
 mod convergence;
+mod format;
 mod runs;
 mod standing;
+pub mod statistics;
 mod summary;
-mod table;
+pub mod tables;
+mod targets;
 
 pub use convergence::{Curve, convergence};
+pub use format::{csv, latex, markdown, render};
 pub use runs::{Run, Step, best_run, load};
 pub use standing::{Failure, Standing, Tally, standing};
 pub use summary::summary;
-pub use table::render;
+pub use targets::{Targets, targets};

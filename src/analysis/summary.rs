@@ -3,15 +3,9 @@
 use polars::prelude::*;
 
 use super::runs::{Run, groups};
+use super::targets::plain;
+use super::statistics::quantile;
 use crate::experiment::{Instance, Plan};
-
-/// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7), of
-/// sorted values; an infinite neighbour makes it infinite.
-pub(super) fn quantile(sorted: &[f64], q: f64) -> f64 {
-    let position = q * (sorted.len() - 1) as f64;
-    let (low, high) = (sorted[position.floor() as usize], sorted[position.ceil() as usize]);
-    if low == high { low } else { low + (high - low) * position.fract() }
-}
 
 /// One line an optimiser and group of instances: quartiles of the best cost over the runs, failures
 /// counted as infinite, and the best motion's residual \[°\] and duration \[s\] where there are
@@ -81,30 +75,8 @@ fn target_columns(plan: &Plan, groups: &[Vec<&Run>]) -> Vec<Column> {
     (0..most).map(column).collect()
 }
 
-/// A number as given, with an exponent where it is far from one.
-fn plain(number: f64) -> String {
-    let written_out = number == 0.0 || (1e-3..1e6).contains(&number.abs());
-    if written_out { format!("{number}") } else { format!("{number:e}") }
-}
-
 fn quantile_of(group: &[&Run], value: fn(&Run) -> f64, q: f64) -> f64 {
     let mut values: Vec<f64> = group.iter().map(|run| value(run)).collect();
     values.sort_by(f64::total_cmp);
     quantile(&values, q)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quantile;
-
-    /// Expected values from `numpy.quantile(..., method="linear")`.
-    #[test]
-    fn quantiles_interpolate_as_numpy_does() {
-        let sorted = [1.0, 2.0, 4.0, 8.0];
-        for (q, expected) in [(0.0, 1.0), (0.25, 1.75), (0.5, 3.0), (0.75, 5.0), (1.0, 8.0)] {
-            assert_eq!(quantile(&sorted, q), expected);
-        }
-        assert_eq!(quantile(&[1.0, f64::INFINITY], 0.5), f64::INFINITY);
-        assert_eq!(quantile(&[3.0, f64::INFINITY, f64::INFINITY], 1.0), f64::INFINITY);
-    }
 }

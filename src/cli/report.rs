@@ -5,9 +5,13 @@ use std::path::Path;
 use clap::Args;
 
 use super::CliError;
-use super::results::ResultsFolder;
-use crate::analysis::{self, best_run, convergence, render, summary};
-use crate::experiment::{Plan, Store};
+use super::results::{Results, ResultsFolder};
+use crate::analysis::tables::{Table, tables};
+use crate::analysis::{
+    self, Run, best_run, convergence, csv, latex, markdown, render, summary,
+};
+use crate::experiment::Plan;
+use crate::output::{create_folder, write_file};
 use crate::plot;
 use crate::problem::{BestKnown, Motion};
 
@@ -20,20 +24,36 @@ pub(super) struct Report {
 
 impl Report {
     pub(super) fn execute(self) -> Result<(), CliError> {
-        let results = self.results.open()?;
-        report(&results.plan, &results.store, &results.folder)
+        let Results { folder, plan, store } = self.results.open()?;
+        let runs = analysis::load(&plan, &store)?;
+        write_tables(&plan, &runs, &folder.join("tables"))?;
+        report(&plan, &runs, &folder)
     }
 }
 
+/// Writes every table as CSV and, unless it is a curve, as Markdown and LaTeX.
+fn write_tables(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError> {
+    create_folder(folder)?;
+    for Table { name, caption, frame, is_curve } in tables(plan, runs)? {
+        write_file(&folder.join(format!("{name}.csv")), &csv(&frame)?)?;
+        if !is_curve {
+            let text = format!("{}\n{caption}\n", markdown(&frame)?);
+            write_file(&folder.join(format!("{name}.md")), text.as_bytes())?;
+            let text = format!("% {caption}\n{}", latex(&frame)?);
+            write_file(&folder.join(format!("{name}.tex")), text.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
 /// Prints the summary of all stored runs of the plan and draws them.
-pub(super) fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
-    let runs = analysis::load(plan, store)?;
+pub(super) fn report(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError> {
     if runs.len() < plan.runs.len() {
         say!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
     }
-    say!("{}", render(&summary(plan, &runs)?)?);
+    say!("{}", render(&summary(plan, runs)?)?);
     let figures = folder.join("figures");
-    let curves = convergence(plan, &runs);
+    let curves = convergence(plan, runs);
     plot::convergence(&curves, plan.cost_symbol()).save(&figures, "convergence")?;
     for (i, instance) in plan.instances.iter().enumerate() {
         let (Some(problem), Some(best)) =

@@ -9,6 +9,7 @@ use super::progress::Bar;
 use super::report::report;
 use super::results::EXPERIMENT;
 use super::{CliError, read_or, warn_of, watch};
+use crate::analysis;
 use crate::experiment::{
     self, ExperimentFile, Instance, Plan, Progress, Record, RunSpec, Shard, Store,
 };
@@ -84,7 +85,7 @@ impl Run {
         let store = Store::open(&folder)?;
         keep_inputs(file.with_targets(&plan), &document, &folder)?;
         self.run_missing(&plan, &store, &folder)?;
-        report(&plan, &store, &folder)
+        report(&plan, &analysis::load(&plan, &store)?, &folder)
     }
 
     fn run_missing(&self, plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {

@@ -80,6 +80,14 @@ impl Instance {
         }
     }
 
+    /// The cost in the middle of the box: on the task, that of the motion without bumps, as fast as the limits
+    /// allow.
+    pub fn centre_cost(&self) -> f64 {
+        let problem = self.problem(Formulation::TimeFree);
+        let centre: Vec<f64> = problem.bounds().iter().map(|[a, b]| a + 0.5 * (b - a)).collect();
+        problem.evaluate(&centre).cost
+    }
+
     /// The problem as an optimiser with this formulation sees it.
     pub fn problem(&self, formulation: Formulation) -> Arc<dyn Problem + Send + Sync> {
         match &self.subject {

@@ -9,7 +9,6 @@ use polars::prelude::*;
 use super::{Plan, RunSpec};
 use crate::oracle::{Oracle, Stop, TracePoint};
 use crate::problem::Assessment;
-use crate::task::Task;
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -136,7 +135,7 @@ fn row(
     let settings = serde_json::to_string(&entrant.settings).unwrap_or_default();
     let best = oracle.best();
     let found = |value: fn(&Assessment) -> f64| motion.as_ref().map(|(_, motion)| value(motion));
-    let limit = |order: usize| task.and_then(|task| uniform_limit_deg(task, order));
+    let limit = |order: usize| task.and_then(|task| task.uniform_limit_deg(order));
     df!(
         "format" => [FORMAT],
         "key" => [run.key.as_str()],
@@ -181,14 +180,6 @@ fn row(
         "cpu" => [cpu()],
         "date" => [Utc::now().to_rfc3339()],
     )
-}
-
-/// The same limit for all joints, or none to show. Degrees as written, without the rounding of their
-/// way through radians.
-fn uniform_limit_deg(task: &Task, order: usize) -> Option<f64> {
-    let first = task.limits.0[0][order];
-    let uniform = task.limits.0.iter().all(|limits| limits[order] == first);
-    uniform.then(|| (first.to_degrees() * 1e9).round() / 1e9)
 }
 
 /// One cell that holds a list of numbers, or null.

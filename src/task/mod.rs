@@ -26,6 +26,17 @@ pub struct Task {
     pub base_weight: f64,
 }
 
+impl Task {
+    /// The limit of all joints on rate, acceleration or jerk (order 0, 1, 2), in degrees; none where
+    /// joints differ. As written, without the rounding of its way through radians.
+    pub fn uniform_limit_deg(&self, order: usize) -> Option<f64> {
+        let limit = |limits: &[f64; 3]| limits.get(order).copied();
+        let first = self.limits.0.first().and_then(limit)?;
+        let uniform = self.limits.0.iter().all(|limits| limit(limits) == Some(first));
+        uniform.then(|| (first.to_degrees() * 1e9).round() / 1e9)
+    }
+}
+
 /// Joint angles and base attitude, at rest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Posture {

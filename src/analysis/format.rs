@@ -1,0 +1,164 @@
+//! Tables as text: for a terminal, and as CSV, Markdown and LaTeX.
+
+use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
+use polars::prelude::*;
+
+/// Draws a table for a terminal; numbers to five significant digits.
+///
+/// A text column in which every cell is empty is left out.
+pub fn render(frame: &DataFrame) -> PolarsResult<String> {
+    let mut table = drawn(frame)?;
+    table
+        .load_preset(presets::NOTHING)
+        .set_style(TableComponent::HeaderLines, '─')
+        .set_style(TableComponent::MiddleHeaderIntersections, '─');
+    Ok(table.to_string())
+}
+
+/// A table in Markdown, with the cells of [`render`].
+pub fn markdown(frame: &DataFrame) -> PolarsResult<String> {
+    let mut table = drawn(frame)?;
+    table.load_preset(presets::ASCII_MARKDOWN);
+    Ok(format!("{table}\n"))
+}
+
+fn drawn(frame: &DataFrame) -> PolarsResult<Table> {
+    let shown = shown(frame);
+    let mut table = Table::new();
+    table
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header(shown.iter().map(|column| column.name().as_str()));
+    for i in 0..frame.height() {
+        table.add_row(cells(&shown, i, cell)?);
+    }
+    for (i, column) in shown.iter().enumerate() {
+        if let (false, Some(column)) = (column.dtype().is_string(), table.column_mut(i)) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    Ok(table)
+}
+
+/// A table as a LaTeX `tabular` with the rules of the package booktabs, and the cells of [`render`].
+pub fn latex(frame: &DataFrame) -> PolarsResult<String> {
+    let shown = shown(frame);
+    let alignment = shown.iter().map(|c| if c.dtype().is_string() { 'l' } else { 'r' });
+    let row = |cells: Vec<String>| {
+        let cells: Vec<String> = cells.iter().map(|cell| in_latex(cell)).collect();
+        format!("{} \\\\\n", cells.join(" & "))
+    };
+    let header = row(shown.iter().map(|column| column.name().to_string()).collect());
+    let mut text =
+        format!("\\begin{{tabular}}{{{}}}\n\\toprule\n", alignment.collect::<String>());
+    text += &header;
+    text += "\\midrule\n";
+    for i in 0..frame.height() {
+        text += &row(cells(&shown, i, cell)?);
+    }
+    text += "\\bottomrule\n\\end{tabular}\n";
+    Ok(text)
+}
+
+/// A text with what LaTeX reads otherwise.
+fn in_latex(text: &str) -> String {
+    let mut latex = String::new();
+    for character in text.chars() {
+        match character {
+            '&' | '%' | '#' | '_' | '{' | '}' | '$' => latex.extend(['\\', character]),
+            '\\' => latex += "\\textbackslash{}",
+            '~' => latex += "\\textasciitilde{}",
+            '^' => latex += "\\textasciicircum{}",
+            '≤' => latex += "$\\leq$",
+            '∞' => latex += "$\\infty$",
+            '°' => latex += "$^\\circ$",
+            '²' => latex += "$^2$",
+            'χ' => latex += "$\\chi$",
+            'τ' => latex += "$\\tau$",
+            '–' => latex += "--",
+            other => latex.push(other),
+        }
+    }
+    latex
+}
+
+/// A table as comma-separated values; numbers with all their digits, `inf` where they are infinite, and empty
+/// where there are none.
+pub fn csv(frame: &DataFrame) -> PolarsResult<Vec<u8>> {
+    let columns: Vec<&Column> = frame.columns().iter().collect();
+    let broken = |error: csv::Error| PolarsError::ComputeError(error.to_string().into());
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(columns.iter().map(|column| column.name().as_str())).map_err(broken)?;
+    for i in 0..frame.height() {
+        writer.write_record(cells(&columns, i, exact)?).map_err(broken)?;
+    }
+    writer.into_inner().map_err(|error| broken(error.into_error().into()))
+}
+
+fn shown(frame: &DataFrame) -> Vec<&Column> {
+    frame.columns().iter().filter(|column| !is_blank(column)).collect()
+}
+
+/// One row's cells.
+fn cells(
+    columns: &[&Column],
+    row: usize,
+    text: fn(&AnyValue<'_>) -> String,
+) -> PolarsResult<Vec<String>> {
+    columns.iter().map(|column| Ok(text(&column.get(row)?))).collect()
+}
+
+fn exact(value: &AnyValue<'_>) -> String {
+    match value {
+        AnyValue::Float64(number) if number.is_nan() => String::new(),
+        AnyValue::Float64(number) => number.to_string(),
+        AnyValue::Null => String::new(),
+        other => cell(other),
+    }
+}
+
+fn is_blank(column: &Column) -> bool {
+    column.str().is_ok_and(|text| text.iter().all(|cell| cell.is_none_or(str::is_empty)))
+}
+
+fn cell(value: &AnyValue<'_>) -> String {
+    match value {
+        AnyValue::Float64(number) => significant(*number),
+        AnyValue::String(text) => (*text).to_owned(),
+        AnyValue::StringOwned(text) => text.to_string(),
+        AnyValue::Null => "–".to_owned(),
+        other => other.to_string(),
+    }
+}
+
+/// Five significant digits, in plain notation where that is readable.
+fn significant(number: f64) -> String {
+    if !number.is_finite() {
+        return if number == f64::INFINITY { "∞" } else { "–" }.to_owned();
+    }
+    let magnitude = if number == 0.0 { 0.0 } else { number.abs().log10().floor() };
+    if (-4.0..7.0).contains(&magnitude) {
+        format!("{number:.*}", (4.0 - magnitude).max(0.0) as usize)
+    } else {
+        format!("{number:.3e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::significant;
+
+    #[test]
+    fn keeps_five_significant_digits() {
+        for (number, text) in [
+            (0.0, "0.0000"),
+            (0.781_849_4, "0.78185"),
+            (13.290_71, "13.291"),
+            (123_456.7, "123457"),
+            (0.000_123_456, "0.00012346"),
+            (1.5e-7, "1.500e-7"),
+            (f64::NAN, "–"),
+        ] {
+            assert_eq!(significant(number), text);
+        }
+    }
+}

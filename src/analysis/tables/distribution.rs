@@ -1,0 +1,101 @@
+//! The empirical distribution of running times over many targets.
+
+use polars::prelude::*;
+
+use super::fixed_target::{times, trial};
+use super::{Field, Table};
+use crate::analysis::Run;
+use crate::analysis::statistics::{Trial, simulated_restarts};
+use crate::oracle::Rng;
+
+/// Targets: the least cost known and 10², …, 10⁻⁸ above it, five to a power of ten, as COCO has them.
+const TARGETS: i32 = 51;
+/// Simulated restarts for each instance and target.
+const RESTARTS: usize = 50;
+/// Points of a curve.
+const POINTS: usize = 100;
+
+/// What a group's runs say about all targets, in evaluations.
+#[derive(Default)]
+struct Times {
+    /// Of the runs as they were.
+    runs: Vec<f64>,
+    /// Of runs restarted until they succeed.
+    restarted: Vec<f64>,
+}
+
+/// One curve an optimiser and group, and one an optimiser over all.
+pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
+    let budget = field.runs.iter().map(|run| run.budget).max().unwrap_or(1);
+    let grid = grid(10.0 * budget as f64);
+    let mut columns = (vec![], vec![], vec![], vec![], vec![]);
+    let mut all: Vec<Times> = field.plan.optimisers.iter().map(|_| Times::default()).collect();
+    let mut add = |labels: [&str; 2], times: &mut Times| {
+        for list in [&mut times.runs, &mut times.restarted] {
+            list.sort_by(f64::total_cmp);
+        }
+        for &evaluations in &grid {
+            columns.0.push(labels[1].to_owned());
+            columns.1.push(labels[0].to_owned());
+            columns.2.push(evaluations);
+            columns.3.push(share(&times.runs, evaluations));
+            columns.4.push(share(&times.restarted, evaluations));
+        }
+    };
+    let mut groups = std::collections::HashSet::new();
+    for group in &field.groups {
+        let mut times = times_of(field, group);
+        let over_all = &mut all[group[0].optimiser];
+        over_all.runs.extend(&times.runs);
+        over_all.restarted.extend(&times.restarted);
+        let labels = field.labels(group);
+        groups.insert(labels[1]);
+        add(labels, &mut times);
+    }
+    if groups.len() > 1 {
+        for (i, times) in all.iter_mut().enumerate().filter(|(_, times)| !times.runs.is_empty()) {
+            add([field.optimiser(i), "all"], times);
+        }
+    }
+    let frame = df!(
+        "instance" => columns.0,
+        "optimiser" => columns.1,
+        "evaluations" => columns.2,
+        "share of runs" => columns.3,
+        "share with restarts" => columns.4,
+    )?;
+    let caption = "Share of pairs of instance and target reached within so many evaluations; 51 targets from 10² to \
+        10⁻⁸ above the least cost known or found. With restarts: a run that fails is followed by others, drawn with \
+        replacement, until one succeeds.";
+    Ok(Table::curve("running-time-distribution", caption, frame))
+}
+
+/// Evaluations, evenly spaced on a logarithmic axis.
+fn grid(last: f64) -> Vec<f64> {
+    let mut grid: Vec<f64> =
+        (0..POINTS).map(|i| last.powf(i as f64 / (POINTS - 1) as f64).round()).collect();
+    grid.dedup();
+    grid
+}
+
+/// Share of sorted times up to a limit.
+fn share(times: &[f64], limit: f64) -> f64 {
+    times.partition_point(|&time| time <= limit) as f64 / times.len().max(1) as f64
+}
+
+/// The running times of the runs of one optimiser on one group of instances.
+fn times_of(field: &Field<'_>, group: &[&Run]) -> Times {
+    let mut by_instance: Vec<&Run> = group.to_vec();
+    by_instance.sort_by_key(|run| run.instance);
+    let mut found = Times::default();
+    let mut rng = Rng::new(1);
+    for runs in by_instance.chunk_by(|a, b| a.instance == b.instance) {
+        let least = field.targets.least[runs[0].instance];
+        for target in (0..TARGETS).map(|i| least + 10_f64.powf(2.0 - f64::from(i) / 5.0)) {
+            let trials: Vec<Trial> = runs.iter().map(|run| trial(run, target)).collect();
+            found.runs.extend(times(&trials));
+            found.restarted.extend(simulated_restarts(&trials, RESTARTS, |n| rng.index(n)));
+        }
+    }
+    found
+}

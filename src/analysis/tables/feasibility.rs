@@ -1,0 +1,25 @@
+//! When the limits are first kept.
+
+use polars::prelude::*;
+
+use super::{Field, Table, quartiles};
+use crate::analysis::Run;
+
+/// One line a group and optimiser.
+pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
+    let groups = &field.groups;
+    let first = |run: &&Run| run.first_feasible.map_or(f64::INFINITY, |first| first as f64);
+    let quartiles: Vec<_> = groups.iter().map(|g| quartiles(g.iter().map(first))).collect();
+    let kept = |group: &[&Run]| group.iter().filter(|run| run.first_feasible.is_some()).count();
+    let frame = df!(
+        "instance" => groups.iter().map(|g| field.labels(g)[1]).collect::<Vec<_>>(),
+        "optimiser" => groups.iter().map(|g| field.labels(g)[0]).collect::<Vec<_>>(),
+        "runs" => groups.iter().map(|g| g.len() as u64).collect::<Vec<_>>(),
+        "feasible" => groups.iter().map(|g| kept(g) as u64).collect::<Vec<_>>(),
+        "quartile 1" => quartiles.iter().map(|q| q[0]).collect::<Vec<_>>(),
+        "median" => quartiles.iter().map(|q| q[1]).collect::<Vec<_>>(),
+        "quartile 3" => quartiles.iter().map(|q| q[2]).collect::<Vec<_>>(),
+    )?;
+    let caption = "Evaluations until a point within all limits was evaluated; infinite for a run without one.";
+    Ok(Table::new("first-feasible", caption, frame))
+}

@@ -1,0 +1,118 @@
+//! The tables of a report, one file a table.
+
+mod best_motions;
+mod distribution;
+mod feasibility;
+mod fixed_budget;
+mod fixed_target;
+mod pairs;
+mod profiles;
+mod ranks;
+
+use polars::prelude::*;
+
+use super::runs::groups;
+use super::statistics::{Bootstrap, quantile};
+use super::{Run, Targets, summary, targets};
+use crate::experiment::Plan;
+use crate::oracle::Rng;
+
+/// One table of a report.
+#[derive(Debug, Clone)]
+pub struct Table {
+    /// Name of its files.
+    pub name: &'static str,
+    /// What it shows.
+    pub caption: String,
+    /// Its rows.
+    pub frame: DataFrame,
+    /// Whether it is a curve's many points, which nobody reads.
+    pub is_curve: bool,
+}
+
+impl Table {
+    fn new(name: &'static str, caption: impl Into<String>, frame: DataFrame) -> Self {
+        Self { name, caption: caption.into(), frame, is_curve: false }
+    }
+
+    fn curve(name: &'static str, caption: impl Into<String>, frame: DataFrame) -> Self {
+        Self { is_curve: true, ..Self::new(name, caption, frame) }
+    }
+}
+
+/// What all tables are made of.
+struct Field<'a> {
+    plan: &'a Plan,
+    runs: &'a [Run],
+    /// The runs by optimiser and group of instances.
+    groups: Vec<Vec<&'a Run>>,
+    targets: Targets,
+}
+
+/// Every table that the runs of a plan give.
+pub fn tables(plan: &Plan, runs: &[Run]) -> PolarsResult<Vec<Table>> {
+    let field = Field { plan, runs, groups: groups(plan, runs), targets: targets(plan, runs) };
+    let caption = "Certified best costs over all runs; a failed run counts as infinite.";
+    let mut tables = vec![Table::new("summary", caption, summary(plan, runs)?)];
+    tables.push(best_motions::table(&field)?);
+    tables.extend(best_motions::pareto(&field)?);
+    tables.push(fixed_target::targets(&field)?);
+    tables.push(fixed_target::table(&field)?);
+    tables.push(fixed_budget::table(&field)?);
+    tables.push(feasibility::table(&field)?);
+    if let Some(blocks) = ranks::Blocks::of(&field) {
+        tables.push(ranks::friedman_table(&field, &blocks)?);
+        tables.push(ranks::table(&field, &blocks)?);
+        tables.push(pairs::table(&field, &blocks)?);
+    }
+    tables.push(distribution::table(&field)?);
+    tables.extend(profiles::tables(&field)?);
+    Ok(tables)
+}
+
+impl Field<'_> {
+    /// The label of an optimiser.
+    fn optimiser(&self, index: usize) -> &str {
+        &self.plan.optimisers[index].label
+    }
+
+    /// The label of the optimiser and of the group that some runs share.
+    fn labels(&self, group: &[&Run]) -> [&str; 2] {
+        let instance = &self.plan.instances[group[0].instance];
+        [self.optimiser(group[0].optimiser), &instance.group]
+    }
+}
+
+/// Level of the bootstrap's intervals.
+const LEVEL: f64 = 0.95;
+/// Level of the tests.
+const ALPHA: f64 = 0.05;
+
+/// The bootstrap's interval of a statistic: 1000 resamples; of a sample of more than 200, as many as
+/// make 200,000 draws, 100 at least.
+fn interval<T: Copy>(sample: &[T], statistic: impl Fn(&[T]) -> f64) -> [f64; 2] {
+    let resamples = (200_000 / sample.len().max(1)).clamp(100, 1000);
+    let mut rng = Rng::new(1);
+    let draw = |count| rng.index(count);
+    Bootstrap { level: LEVEL, resamples }.interval(sample, statistic, draw)
+}
+
+/// Quartiles of unsorted values; infinite ones are the largest.
+fn quartiles(values: impl Iterator<Item = f64>) -> [f64; 3] {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    [0.25, 0.5, 0.75].map(|q| quantile(&sorted, q))
+}
+
+/// The median of unsorted values.
+fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    let odd = values.len() % 2 == 1;
+    let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    let lower = if odd { upper } else { below.iter().copied().fold(f64::NEG_INFINITY, f64::max) };
+    if lower == upper { upper } else { lower + 0.5 * (upper - lower) }
+}

@@ -1,0 +1,84 @@
+//! Performance and data profiles.
+
+use std::collections::HashMap;
+
+use polars::prelude::*;
+
+use super::{Field, Table};
+use crate::analysis::statistics::{Step, data_profiles, performance_profiles};
+
+/// Both profiles, a curve an optimiser and target. A problem is an instance with a seed; those that an
+/// optimiser has not tried yet are left out.
+pub(super) fn tables(field: &Field<'_>) -> PolarsResult<[Table; 2]> {
+    let (mut performance, mut data) = (Curves::default(), Curves::default());
+    for (k, target) in field.targets.labels.iter().enumerate() {
+        let (times, dimensions) = problems(field, k);
+        performance.add(field, target, performance_profiles(&times));
+        data.add(field, target, data_profiles(&times, &dimensions));
+    }
+    let pool: Vec<&str> = field.plan.optimisers.iter().map(|o| o.label.as_str()).collect();
+    let pool = pool.join(", ");
+    Ok([
+        Table::curve(
+            "performance-profiles",
+            format!(
+                "Share of problems (instances with seeds) whose target is reached within a multiple of the fewest \
+                 evaluations that any of these needed: {pool}."
+            ),
+            performance.into_frame("ratio")?,
+        ),
+        Table::curve(
+            "data-profiles",
+            format!(
+                "Share of problems (instances with seeds) whose target is reached within so many simplex gradients, \
+                 n + 1 evaluations each, by each of {pool}."
+            ),
+            data.into_frame("simplex gradients")?,
+        ),
+    ])
+}
+
+/// Evaluations to the k-th target for every problem and optimiser, and every problem's dimension.
+fn problems(field: &Field<'_>, k: usize) -> (Vec<Vec<f64>>, Vec<usize>) {
+    let solvers = field.plan.optimisers.len();
+    let mut rows: HashMap<(usize, u64), Vec<Option<f64>>> = HashMap::new();
+    for run in field.runs {
+        if let Some(&target) = field.targets.values[run.instance].get(k) {
+            let row = rows.entry((run.instance, run.seed)).or_insert_with(|| vec![None; solvers]);
+            row[run.optimiser] = Some(run.hit(target).map_or(f64::INFINITY, |hit| hit as f64));
+        }
+    }
+    let complete = |(&(instance, _), row): (&(usize, u64), &Vec<Option<f64>>)| {
+        let row: Option<Vec<f64>> = row.iter().copied().collect();
+        row.map(|row| (row, field.plan.instances[instance].dimension()))
+    };
+    rows.iter().filter_map(complete).unzip()
+}
+
+#[derive(Default)]
+struct Curves {
+    targets: Vec<String>,
+    optimisers: Vec<String>,
+    steps: Vec<Step>,
+}
+
+impl Curves {
+    fn add(&mut self, field: &Field<'_>, target: &str, profiles: Vec<Vec<Step>>) {
+        for (optimiser, steps) in profiles.into_iter().enumerate() {
+            for step in steps {
+                self.targets.push(target.to_owned());
+                self.optimisers.push(field.optimiser(optimiser).to_owned());
+                self.steps.push(step);
+            }
+        }
+    }
+
+    fn into_frame(self, time: &str) -> PolarsResult<DataFrame> {
+        df!(
+            "target" => self.targets,
+            "optimiser" => self.optimisers,
+            time => self.steps.iter().map(|step| step.time).collect::<Vec<_>>(),
+            "share" => self.steps.iter().map(|step| step.share).collect::<Vec<_>>(),
+        )
+    }
+}
