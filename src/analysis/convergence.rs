@@ -6,6 +6,7 @@ use polars::prelude::*;
 
 use super::runs::{Run, groups};
 use super::summary::quantile;
+use super::traces::{Trace, traces};
 use crate::experiment::Plan;
 
 /// Quartiles of the best cost so far over the seeds and the instances of a group.
@@ -28,34 +29,14 @@ const POINTS: usize = 200;
 ///
 /// A curve holds where every run of the group still counts: up to the smallest budget among them. A
 /// run that ended early keeps the best it had.
-pub fn convergence(plan: &Plan, runs: &[Run], traces: &DataFrame) -> PolarsResult<Vec<Curve>> {
-    let steps = steps(traces)?;
-    Ok(groups(plan, runs).iter().map(|group| curve(plan, group, &steps)).collect())
+pub fn convergence(plan: &Plan, runs: &[Run], table: &DataFrame) -> PolarsResult<Vec<Curve>> {
+    let traces = traces(table)?;
+    Ok(groups(plan, runs).iter().map(|group| curve(plan, group, &traces)).collect())
 }
 
-/// The rows of a run's trace: evaluation and best cost.
-type Trace = Vec<(f64, f64)>;
-
-/// Evaluation and best cost of every row of the traces, by run.
-fn steps(traces: &DataFrame) -> PolarsResult<HashMap<String, Trace>> {
-    let mut steps: HashMap<String, Trace> = HashMap::new();
-    if traces.height() == 0 {
-        return Ok(steps);
-    }
-    let keys = traces.column("key")?.str()?;
-    let evaluations = traces.column("evaluation")?.u64()?;
-    let costs = traces.column("j")?.f64()?;
-    for i in 0..traces.height() {
-        if let (Some(key), Some(n), Some(j)) = (keys.get(i), evaluations.get(i), costs.get(i)) {
-            steps.entry(key.to_owned()).or_default().push((n as f64, j));
-        }
-    }
-    Ok(steps)
-}
-
-fn curve(plan: &Plan, group: &[&Run], steps: &HashMap<String, Trace>) -> Curve {
+fn curve(plan: &Plan, group: &[&Run], traces: &HashMap<String, Trace>) -> Curve {
     let budget = group.iter().map(|run| run.budget).min().unwrap_or(1);
-    let traces = group.iter().map(|run| steps.get(&run.key).map_or(&[][..], Vec::as_slice));
+    let traces = group.iter().map(|run| traces.get(&run.key).map_or(&[][..], Vec::as_slice));
     let traces: Vec<_> = traces.collect();
     let last = (budget as f64).ln();
     let mut evaluations: Vec<f64> =
@@ -75,7 +56,7 @@ fn curve(plan: &Plan, group: &[&Run], steps: &HashMap<String, Trace>) -> Curve {
 }
 
 /// Best cost after so many evaluations; infinite before the first.
-fn best_at(trace: &[(f64, f64)], place: f64) -> f64 {
-    let made = trace.partition_point(|(evaluation, _)| *evaluation <= place);
+fn best_at(trace: &[(u64, f64)], place: f64) -> f64 {
+    let made = trace.partition_point(|(evaluation, _)| *evaluation as f64 <= place);
     made.checked_sub(1).map_or(f64::INFINITY, |i| trace[i].1)
 }

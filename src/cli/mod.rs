@@ -8,6 +8,8 @@ macro_rules! say {
 }
 
 mod check;
+#[cfg(feature = "harness")]
+mod export;
 mod list;
 mod motion;
 mod plan;
@@ -49,6 +51,9 @@ enum Verb {
     /// Run an experiment: every optimiser on every instance for every seed
     #[cfg(feature = "harness")]
     Run(run::Run),
+    /// Write an experiment's runs in a format that other benchmarking tools read
+    #[cfg(feature = "harness")]
+    Export(export::Export),
     /// Find the best motion for one task
     Plan(plan::Plan),
     /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
@@ -95,6 +100,10 @@ enum CliError {
     #[cfg(feature = "harness")]
     #[error(transparent)]
     Store(#[from] crate::experiment::StoreError),
+    /// Stored results could not be exported.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    Suite(#[from] crate::export::SuiteError),
     /// A table could not be made.
     #[cfg(feature = "harness")]
     #[error(transparent)]
@@ -127,6 +136,8 @@ pub fn main() -> ExitCode {
     let outcome = match cli.verb {
         #[cfg(feature = "harness")]
         Verb::Run(run) => run.execute(),
+        #[cfg(feature = "harness")]
+        Verb::Export(export) => export.execute(),
         Verb::Plan(plan) => plan.execute(),
         Verb::Replay(replay) => replay.execute(),
         Verb::List(list) => list.execute(),
