@@ -82,7 +82,7 @@ fn reader(format: SuiteFormat, out: &Path) -> String {
         SuiteFormat::Coco => format!(
             "import cocopp, glob; \
              cocopp.testbedsettings.suite_to_testbed['driftless'] = 'GECCOBBOBTestbed'; \
-             print([d for f in glob.glob('{out}/*') for d in cocopp.pproc.DataSetList(f)])"
+             print(list(cocopp.pproc.DataSetList(glob.glob('{out}/*/*.info'))))"
         ),
     };
     format!("python -c \"{code}\"")

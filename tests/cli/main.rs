@@ -3,5 +3,7 @@
 mod bad_input;
 #[cfg(feature = "harness")]
 mod experiments;
+#[cfg(feature = "harness")]
+mod export;
 mod folder;
 mod verbs;
