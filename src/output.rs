@@ -23,7 +23,7 @@ pub fn check_writable(path: &Path) -> Result<(), FileError> {
         return Err(error(io::ErrorKind::IsADirectory.into()));
     }
     fs::metadata(folder_of(path)).map_err(error)?;
-    readable_by_all().tempfile_in(folder_of(path)).map(drop).map_err(error)
+    readable_by_all(0o666).tempfile_in(folder_of(path)).map(drop).map_err(error)
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -33,7 +33,7 @@ fn folder_of(path: &Path) -> &Path {
 /// Writes to a temporary file in the same folder, flushes it to the disk and renames it.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let error = |source| FileError { action: "write", path: path.to_owned(), source };
-    let mut file = readable_by_all().tempfile_in(folder_of(path)).map_err(error)?;
+    let mut file = readable_by_all(0o666).tempfile_in(folder_of(path)).map_err(error)?;
     file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(error)?;
     file.persist(path).map_err(|e| error(e.error))?;
     Ok(())
@@ -55,13 +55,39 @@ pub fn sync_folder(path: &Path) -> Result<(), FileError> {
     if cfg!(unix) { fs::File::open(path).and_then(|folder| folder.sync_all()).map_err(error) } else { Ok(()) }
 }
 
-/// Temporary files are private by default; a result is for everybody whom the umask lets read.
-fn readable_by_all() -> tempfile::Builder<'static, 'static> {
+/// Has a folder filled under a temporary name beside its own, then renames it. Nothing that is there
+/// is touched: the folder may exist, but only empty.
+pub fn write_folder<E: From<FileError>>(
+    path: &Path,
+    fill: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<(), E> {
+    let error = |source| FileError { action: "write", path: path.to_owned(), source };
+    let exists = match fs::read_dir(path).map(|mut entries| entries.next().is_some()) {
+        Ok(true) => return Err(error(io::ErrorKind::DirectoryNotEmpty.into()).into()),
+        Ok(false) => true,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => false,
+        Err(e) => return Err(error(e).into()),
+    };
+    create_folder(folder_of(path))?;
+    let folder = readable_by_all(0o777).tempdir_in(folder_of(path)).map_err(error)?;
+    fill(folder.path())?;
+    if exists {
+        fs::remove_dir(path).map_err(error)?;
+    }
+    fs::rename(folder.path(), path).map_err(error)?;
+    // The temporary name is gone, so there is nothing left to remove.
+    let _ = folder.keep();
+    Ok(())
+}
+
+/// What is temporary is private by default; a result is for everybody whom the umask lets read.
+#[cfg_attr(not(unix), expect(unused_variables, unused_mut, reason = "modes are Unix's"))]
+fn readable_by_all(mode: u32) -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
-        builder.permissions(fs::Permissions::from_mode(0o666));
+        builder.permissions(fs::Permissions::from_mode(mode));
     }
     builder
 }

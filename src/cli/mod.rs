@@ -10,6 +10,7 @@ macro_rules! say {
 mod check;
 #[cfg(feature = "harness")]
 mod compact;
+mod export;
 mod list;
 mod motion;
 mod plan;
@@ -66,6 +67,9 @@ enum Verb {
     /// Merge many small files of results into few, while others run or read
     #[cfg(feature = "harness")]
     Compact(compact::Compact),
+    /// Write an experiment's runs in a format that other benchmarking tools read
+    #[cfg(feature = "harness")]
+    Export(export::Export),
     /// Find the best motion for one task
     Plan(plan::Plan),
     /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
@@ -112,6 +116,10 @@ enum CliError {
     #[cfg(feature = "harness")]
     #[error(transparent)]
     Store(#[from] crate::experiment::StoreError),
+    /// Stored results could not be exported.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    Suite(#[from] crate::export::SuiteError),
     /// A table could not be made.
     #[cfg(feature = "harness")]
     #[error(transparent)]
@@ -150,6 +158,7 @@ pub fn main() -> ExitCode {
         Verb::Report(report) => report.execute(),
         #[cfg(feature = "harness")]
         Verb::Compact(compact) => compact.execute(),
+        Verb::Export(export) => export.execute(),
         Verb::Plan(plan) => plan.execute(),
         Verb::Replay(replay) => replay.execute(),
         Verb::List(list) => list.execute(),

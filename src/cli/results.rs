@@ -27,15 +27,23 @@ impl ResultsFolder {
     /// Reads the experiment that the folder keeps. Nothing is written.
     pub(super) fn open(&self) -> Result<Results, CliError> {
         let path = self.folder.join(EXPERIMENT);
-        if !path.exists() {
-            return Err(CliError::Usage {
-                message: format!("no results in {}: it has no {EXPERIMENT}", self.folder.display()),
-                help: Some("expected a folder that `driftless run` has filled".to_owned()),
-            });
+        if !path.is_file() {
+            return Err(no_results(&self.folder, &format!("no {EXPERIMENT}")));
         }
         let document = Document::read(&path)?;
         let plan = Plan::new(&ExperimentFile::read(&document)?, &document)?;
         Ok(Results { plan, store: Store::existing(&self.folder), folder: self.folder.clone() })
+    }
+}
+
+/// The error of a folder that is not what it should be.
+pub(super) fn no_results(folder: &Path, found: &str) -> CliError {
+    CliError::Usage {
+        message: format!(
+            "found {found} in {}, expected the results of an experiment",
+            folder.display()
+        ),
+        help: Some("`driftless run` puts them into results/NAME or where --out says".to_owned()),
     }
 }
 

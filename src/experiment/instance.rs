@@ -3,7 +3,9 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::problem::{Assessment, Boxes, Formulated, Formulation, Problem, Reorientation};
+use crate::problem::{
+    Assessment, BestKnown, Boxes, Formulated, Formulation, Problem, Reorientation,
+};
 
 /// One problem of an experiment.
 #[derive(Debug, Clone)]
@@ -86,6 +88,23 @@ impl Instance {
         let problem = self.problem(Formulation::TimeFree);
         let centre: Vec<f64> = problem.bounds().iter().map(|[a, b]| a + 0.5 * (b - a)).collect();
         problem.evaluate(&centre).cost
+    }
+
+    /// The number of variables, whatever the optimiser's formulation, so that formulations of one task
+    /// compare: for the task that of the paper's, free coefficients and duration.
+    pub fn dimension(&self) -> usize {
+        match &self.subject {
+            Subject::Task { problem, .. } => problem.family().dimension() + 1,
+            Subject::Other { problem, .. } => problem.bounds().len(),
+        }
+    }
+
+    /// The least cost known: the best motion's for the task, the least of all for a problem that tells it.
+    pub fn known_cost(&self) -> Option<f64> {
+        match &self.subject {
+            Subject::Task { problem, .. } => BestKnown::of(problem).map(|known| known.j),
+            Subject::Other { problem, .. } => problem.least_cost(),
+        }
     }
 
     /// The problem as an optimiser with this formulation sees it.

@@ -1,14 +1,22 @@
-//! Motions in formats that other tools read.
+//! Motions, and the runs of an experiment, in formats that other tools read.
 
+#[cfg(feature = "harness")]
+mod coco;
 mod csv;
+#[cfg(feature = "harness")]
+mod ioh;
 mod joint_trajectory;
 #[cfg(feature = "harness")]
 mod parquet;
+#[cfg(feature = "harness")]
+mod suite;
 
 use std::path::Path;
 
 use crate::output::{FileError, write_file};
 use crate::problem::Motion;
+#[cfg(feature = "harness")]
+pub use suite::{Algorithm, Function, Objective, Suite, SuiteError, Trial};
 
 /// Intervals between the samples of an exported motion.
 pub const INTERVALS: usize = 500;
@@ -22,6 +30,32 @@ pub enum MotionFormat {
     Parquet,
     /// ROS `trajectory_msgs/JointTrajectory` as YAML.
     Yaml,
+}
+
+/// A format for the runs of an experiment.
+#[cfg(feature = "harness")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum SuiteFormat {
+    /// IOHprofiler, read by iohinspector
+    Ioh,
+    /// COCO, read by cocopp
+    Coco,
+}
+
+/// Writes the runs of an experiment into a folder of their own, whole or not at all.
+#[cfg(feature = "harness")]
+pub fn write_suite(folder: &Path, format: SuiteFormat, suite: &Suite) -> Result<(), SuiteError> {
+    crate::output::write_folder(folder, |folder| match format {
+        SuiteFormat::Ioh => ioh::write(suite, folder),
+        SuiteFormat::Coco => coco::write(suite, folder),
+    })
+}
+
+/// Writes a file of a folder that is renamed when all are written.
+#[cfg(feature = "harness")]
+fn write_plain(path: &Path, text: &str) -> Result<(), FileError> {
+    let error = |source| FileError { action: "write", path: path.to_owned(), source };
+    std::fs::write(path, text).map_err(error)
 }
 
 /// A motion that could not be exported.

@@ -167,6 +167,10 @@ impl Problem for Analytic {
         let cost = self.function.value(z.as_slice()) - self.minimum;
         Evaluation { cost, violation: 0.0 }
     }
+
+    fn least_cost(&self) -> Option<f64> {
+        Some(0.0)
+    }
 }
 
 /// Shift and rotation of an instance.

@@ -37,6 +37,11 @@ pub trait Problem: Sync {
         }
     }
 
+    /// The least cost in the box, where it is known.
+    fn least_cost(&self) -> Option<f64> {
+        None
+    }
+
     /// The same problem with derivatives, where it has them.
     fn composite(&self) -> Option<&dyn Composite> {
         None

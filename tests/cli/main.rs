@@ -3,6 +3,8 @@
 mod bad_input;
 #[cfg(feature = "harness")]
 mod experiments;
+#[cfg(feature = "harness")]
+mod export;
 mod folder;
 #[cfg(feature = "harness")]
 mod survival;

@@ -1,0 +1,186 @@
+//! Runs of every kind become trials that other tools can read: none is lost, none is made better.
+#![cfg(feature = "harness")]
+
+use std::fs;
+use std::num::NonZeroU64;
+use std::sync::Arc;
+
+use driftless::analysis;
+use driftless::experiment::{self, Instance, Plan, Progress, Record, RunSpec, Store};
+use driftless::export::{Suite, SuiteError, SuiteFormat, Trial, write_suite};
+use driftless::optimiser::Settings;
+use driftless::oracle::Watch;
+use driftless::problem::{Analytic, Bounds, Evaluation, Problem, TestFunction};
+
+struct Silent;
+
+impl Progress for Silent {
+    fn finished(&self, _: &RunSpec, _: &Record) {}
+}
+
+/// What a problem gives in one half of its box; in the other, the sum of squares above 3.
+#[derive(Clone, Copy)]
+enum Half {
+    Panics,
+    NotANumber,
+}
+
+struct HalfSound {
+    half: Half,
+    always: bool,
+    bounds: Bounds,
+}
+
+impl HalfSound {
+    fn instance(label: &str, group: &str, half: Half, always: bool, dimension: usize) -> Instance {
+        let bounds = Bounds::new(vec![[-1.0, 1.0]; dimension]);
+        let problem = Arc::new(Self { half, always, bounds });
+        Instance { group: group.to_owned(), ..Instance::other(label, "half", problem) }
+    }
+}
+
+impl Problem for HalfSound {
+    fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Evaluation {
+        let cost = match self.half {
+            _ if x[0] > 0.0 && !self.always => 3.0 + x.iter().map(|x| x * x).sum::<f64>(),
+            Half::Panics => panic!("the wrong half"),
+            Half::NotANumber => f64::NAN,
+        };
+        Evaluation { cost, violation: 0.0 }
+    }
+}
+
+fn number(n: u64) -> NonZeroU64 {
+    NonZeroU64::new(n).unwrap()
+}
+
+/// `random` and `scp`, which has to give up at once for want of derivatives, with eight seeds and twenty
+/// evaluations each; also the spent evaluations of the stored runs.
+fn suite(instances: Vec<Instance>) -> (Suite, Vec<u64>) {
+    std::panic::set_hook(Box::new(|_| {}));
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path()).unwrap();
+    let field = ["random", "scp"].map(|name| Settings::by_name(name).unwrap());
+    let plan = Plan::over("halves", instances, &field, number(8), number(20));
+    let specs: Vec<&RunSpec> = plan.runs.iter().collect();
+    experiment::run(&plan, &specs, &store, 1, &Watch::default(), &Silent).unwrap();
+    let runs = analysis::load(&plan, &store).unwrap();
+    let suite = Suite::new(&plan, &runs).unwrap();
+    (suite, runs.iter().map(|run| run.evaluations).collect())
+}
+
+fn halves() -> Vec<Instance> {
+    use Half::{NotANumber, Panics};
+    vec![
+        HalfSound::instance("a", "mixed", NotANumber, false, 2),
+        HalfSound::instance("b", "mixed", Panics, false, 2),
+        HalfSound::instance("c", "mixed", Panics, false, 3),
+        HalfSound::instance("d", "none/such = 'a'\n+ b", NotANumber, true, 2),
+    ]
+}
+
+#[test]
+fn every_run_is_a_trial_from_its_first_to_its_last_evaluation() {
+    let (suite, spent) = suite(halves());
+    assert_eq!(suite.trials.len(), 4 * 2 * 8);
+    let mut late = 0;
+    for (trial, spent) in suite.trials.iter().zip(spent) {
+        assert_eq!(trial.trace[0].0, 1);
+        assert_eq!(trial.evaluations(), spent.max(1));
+        assert!(trial.trace.is_sorted_by(|a, b| a.0 < b.0 && a.1 >= b.1), "{:?}", trial.trace);
+        late += usize::from(trial.trace[0].1.is_infinite() && trial.best().is_finite());
+        let is_scp = suite.algorithms[trial.algorithm].name == "scp";
+        if is_scp || trial.function == 1 {
+            assert!(trial.best().is_infinite());
+        }
+    }
+    assert!(late > 0, "no run began with a cost that is not finite");
+    let panicked = |trial: &&Trial| trial.algorithm == 0 && trial.evaluations() < 20;
+    assert!(suite.trials.iter().filter(panicked).count() > 8);
+}
+
+/// The least cost found stands in where none is known; of sound test functions it is zero.
+#[test]
+fn optima_are_known_or_least_found() {
+    let sphere = Arc::new(Analytic::new(TestFunction::Sphere, 4, 1));
+    let mut instances = halves();
+    instances.push(Instance::other("e", "sphere", sphere));
+    let (suite, _) = suite(instances);
+    let [mixed, none, sphere] = &suite.functions[..] else { panic!() };
+    for (i, objective) in mixed.instances.iter().enumerate() {
+        let trials = suite.trials.iter().filter(|t| t.function == 0 && t.instance == i);
+        let least = trials.map(Trial::best).fold(f64::INFINITY, f64::min);
+        assert!(least > 3.0 && !objective.is_known);
+        assert_eq!(objective.optimum, least);
+    }
+    assert!(none.instances[0].optimum.is_infinite());
+    assert!(sphere.instances[0].is_known);
+    assert_eq!((sphere.instances[0].optimum, sphere.instances[0].dimension), (0.0, 4));
+    assert_eq!(none.name, "half none/such = 'a' + b");
+    assert_eq!(none.file, "half_none_such____a____b");
+}
+
+/// Two dimensions within a group are two tables, and no two trials share a number.
+#[test]
+fn groups_may_have_several_dimensions() {
+    let (suite, _) = suite(halves());
+    let folder = tempfile::tempdir().unwrap();
+    for (format, out) in [(SuiteFormat::Ioh, "ioh"), (SuiteFormat::Coco, "coco")] {
+        write_suite(&folder.path().join(out), format, &suite).unwrap();
+    }
+    let text = |path: &str| fs::read_to_string(folder.path().join(path)).unwrap();
+    let index: serde_json::Value =
+        serde_json::from_str(&text("ioh/random/IOHprofiler_f1_half_mixed.json")).unwrap();
+    let of = |i: usize| {
+        let scenario = &index["scenarios"][i];
+        let runs = scenario["runs"].as_array().unwrap();
+        let mut instances: Vec<u64> =
+            runs.iter().map(|r| r["instance"].as_u64().unwrap()).collect();
+        instances.dedup();
+        (scenario["dimension"].as_u64().unwrap(), instances, runs.len())
+    };
+    assert_eq!((of(0), of(1)), ((2, vec![1, 2], 16), (3, vec![3], 8)));
+    let index = text("coco/random/bbobexp_f1.info");
+    let entries: Vec<&str> = index.lines().filter(|line| line.starts_with("data_f1/")).collect();
+    let numbers = entries.iter().flat_map(|entry| entry.split(", ").skip(1));
+    let numbers: Vec<u64> =
+        numbers.map(|cell| cell.split(':').next().unwrap().parse().unwrap()).collect();
+    assert_eq!(numbers, (1..=24).collect::<Vec<u64>>());
+    assert!(entries[1].starts_with("data_f1/bbobexp_f1_DIM3.dat, 17:"), "{index}");
+    for line in text("coco/scp/data_f2/bbobexp_f2_DIM2.tdat").lines() {
+        assert!(line.starts_with('%') || line == "1 0 1e300 1e300 1e300", "{line}");
+    }
+}
+
+/// Labels that differ in signs or capitals alone have folders of their own.
+#[test]
+fn folders_are_told_apart() {
+    let problem = || Arc::new(Analytic::new(TestFunction::Sphere, 2, 0));
+    let field = Settings::all();
+    let instances = vec![Instance::other("", "sphere", problem())];
+    let mut plan = Plan::over("labels", instances, &field, number(1), number(1));
+    for (entrant, label) in plan.optimisers.iter_mut().zip(["a/b", "a b", "A=b", "a_b-2"]) {
+        label.clone_into(&mut entrant.label);
+    }
+    let suite = Suite::new(&plan, &[], &polars::prelude::DataFrame::empty()).unwrap();
+    let folders: Vec<&str> = suite.algorithms.iter().map(|a| a.folder.as_str()).collect();
+    assert_eq!(folders[..4], ["a_b", "a_b-2", "A_b-3", "a_b-2-2"]);
+}
+
+/// Sixteen bits number the functions.
+#[test]
+fn too_many_functions_are_an_error() {
+    let problem = Arc::new(Analytic::new(TestFunction::Sphere, 2, 0));
+    let instance = |i: usize| Instance::other(&i.to_string(), "sphere", problem.clone());
+    let plan = |count: usize| {
+        Plan::over("many", (0..count).map(instance).collect(), &[], number(1), number(1))
+    };
+    let suite = |count| Suite::new(&plan(count), &[], &polars::prelude::DataFrame::empty());
+    assert_eq!(suite(65_535).unwrap().functions.len(), 65_535);
+    let error = suite(65_536).unwrap_err();
+    assert!(matches!(error, SuiteError::TooMany { found: 65_536, .. }), "{error}");
+}
