@@ -70,7 +70,7 @@ for second in {1..60}; do
     sleep 1
 done
 
-# In a group of its own and waited for, so that Ctrl-C ends all in order.
-setsid cargo test --release --test cluster -- --ignored --nocapture &
+# In a group of its own and waited for, so that Ctrl-C ends all in order; what it stores goes with the rest.
+TMPDIR=$folder setsid cargo test --release --test cluster -- --ignored --nocapture &
 started+=($!)
 wait $!
