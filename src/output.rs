@@ -52,7 +52,11 @@ pub fn create_folder(path: &Path) -> Result<(), FileError> {
 pub fn sync_folder(path: &Path) -> Result<(), FileError> {
     let error = |source| FileError { action: "flush", path: path.to_owned(), source };
     // Elsewhere a folder is nothing that can be opened.
-    if cfg!(unix) { fs::File::open(path).and_then(|folder| folder.sync_all()).map_err(error) } else { Ok(()) }
+    if cfg!(unix) {
+        fs::File::open(path).and_then(|folder| folder.sync_all()).map_err(error)
+    } else {
+        Ok(())
+    }
 }
 
 /// Has a folder filled under a temporary name beside its own, then renames it. Nothing that is there

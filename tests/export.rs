@@ -166,7 +166,7 @@ fn folders_are_told_apart() {
     for (entrant, label) in plan.optimisers.iter_mut().zip(["a/b", "a b", "A=b", "a_b-2"]) {
         label.clone_into(&mut entrant.label);
     }
-    let suite = Suite::new(&plan, &[], &polars::prelude::DataFrame::empty()).unwrap();
+    let suite = Suite::new(&plan, &[]).unwrap();
     let folders: Vec<&str> = suite.algorithms.iter().map(|a| a.folder.as_str()).collect();
     assert_eq!(folders[..4], ["a_b", "a_b-2", "A_b-3", "a_b-2-2"]);
 }
@@ -179,7 +179,7 @@ fn too_many_functions_are_an_error() {
     let plan = |count: usize| {
         Plan::over("many", (0..count).map(instance).collect(), &[], number(1), number(1))
     };
-    let suite = |count| Suite::new(&plan(count), &[], &polars::prelude::DataFrame::empty());
+    let suite = |count| Suite::new(&plan(count), &[]);
     assert_eq!(suite(65_535).unwrap().functions.len(), 65_535);
     let error = suite(65_536).unwrap_err();
     assert!(matches!(error, SuiteError::TooMany { found: 65_536, .. }), "{error}");

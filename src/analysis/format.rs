@@ -48,8 +48,7 @@ pub fn latex(frame: &DataFrame) -> PolarsResult<String> {
         format!("{} \\\\\n", cells.join(" & "))
     };
     let header = row(shown.iter().map(|column| column.name().to_string()).collect());
-    let mut text =
-        format!("\\begin{{tabular}}{{{}}}\n\\toprule\n", alignment.collect::<String>());
+    let mut text = format!("\\begin{{tabular}}{{{}}}\n\\toprule\n", alignment.collect::<String>());
     text += &header;
     text += "\\midrule\n";
     for i in 0..frame.height() {

@@ -61,25 +61,30 @@ pub fn standing(plan: &Plan, store: &Store) -> Result<Standing, StoreError> {
     let mut tallies = vec![Tally::default(); plan.optimisers.len()];
     plan.runs.iter().for_each(|run| tallies[run.optimiser].planned += 1);
     let (mut failures, mut strangers) = (Vec::new(), 0);
-    store.visit("runs", &["key", "status", "message"], |_| true, |frame| {
-        let text = |name: &str| frame.column(name)?.str();
-        let (keys, statuses, messages) = (text("key")?, text("status")?, text("message")?);
-        for i in 0..frame.height() {
-            let Some(&run) = keys.get(i).and_then(|key| planned.get(key)) else {
-                strangers += 1;
-                continue;
-            };
-            let tally = &mut tallies[plan.runs[run].optimiser];
-            tally.stored += 1;
-            let status = statuses.get(i).unwrap_or_default();
-            if Status::is_failure(status) {
-                tally.failed += 1;
-                let message = messages.get(i).unwrap_or_default().to_owned();
-                failures.push(Failure { run, status: status.to_owned(), message });
+    store.visit(
+        "runs",
+        &["key", "status", "message"],
+        |_| true,
+        |frame| {
+            let text = |name: &str| frame.column(name)?.str();
+            let (keys, statuses, messages) = (text("key")?, text("status")?, text("message")?);
+            for i in 0..frame.height() {
+                let Some(&run) = keys.get(i).and_then(|key| planned.get(key)) else {
+                    strangers += 1;
+                    continue;
+                };
+                let tally = &mut tallies[plan.runs[run].optimiser];
+                tally.stored += 1;
+                let status = statuses.get(i).unwrap_or_default();
+                if Status::is_failure(status) {
+                    tally.failed += 1;
+                    let message = messages.get(i).unwrap_or_default().to_owned();
+                    failures.push(Failure { run, status: status.to_owned(), message });
+                }
             }
-        }
-        Ok(())
-    })?;
+            Ok(())
+        },
+    )?;
     failures.sort_by_key(|failure| failure.run);
     Ok(Standing { tallies, failures, strangers })
 }

@@ -3,8 +3,8 @@
 use polars::prelude::*;
 
 use super::runs::{Run, groups};
-use super::targets::plain;
 use super::statistics::quantile;
+use super::targets::plain;
 use crate::experiment::{Instance, Plan};
 
 /// One line an optimiser and group of instances: quartiles of the best cost over the runs, failures

@@ -112,6 +112,11 @@ enum CliError {
     #[cfg(feature = "harness")]
     #[error(transparent)]
     Run(#[from] crate::experiment::RunError),
+    /// It is not known which part of an experiment is meant.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Shard(#[from] crate::experiment::ShardError),
     /// A stored result could not be read.
     #[cfg(feature = "harness")]
     #[error(transparent)]
@@ -136,6 +141,8 @@ impl CliError {
     fn exit_code(&self) -> ExitCode {
         match self {
             Self::Input(_) | Self::Usage { .. } => ExitCode::from(2),
+            #[cfg(feature = "harness")]
+            Self::Shard(_) => ExitCode::from(2),
             _ => ExitCode::from(1),
         }
     }

@@ -7,9 +7,7 @@ use clap::Args;
 use super::CliError;
 use super::results::{Results, ResultsFolder};
 use crate::analysis::tables::{Table, tables};
-use crate::analysis::{
-    self, Run, best_run, convergence, csv, latex, markdown, render, summary,
-};
+use crate::analysis::{self, Run, best_run, convergence, csv, latex, markdown, render, summary};
 use crate::experiment::Plan;
 use crate::output::{create_folder, write_file};
 use crate::plot;

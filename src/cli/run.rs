@@ -11,10 +11,10 @@ use super::results::EXPERIMENT;
 use super::{CliError, read_or, warn_of, watch};
 use crate::analysis;
 use crate::experiment::{
-    self, ExperimentFile, Instance, Plan, Progress, Record, RunSpec, Shard, Store,
+    self, ExperimentFile, Instance, Plan, Progress, Record, RunSpec, Shard, ShardChoice, Store,
 };
 use crate::input::Document;
-use crate::output::write_file;
+use crate::output::{check_writable, write_file};
 use crate::robot::RobotFile;
 
 /// Run an experiment: every optimiser on every instance for every seed
@@ -35,9 +35,10 @@ pub(super) struct Run {
     /// Runs at a time [default: one a processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Only a disjoint part of the runs, such as 0/4
-    #[arg(long, value_name = "I/N")]
-    shard: Option<Shard>,
+    /// Only a disjoint part of the runs, such as 0/4; /4 takes the index from the scheduler that runs
+    /// this, and --shard alone the count too
+    #[arg(long, value_name = "I/N", num_args = 0..=1, default_missing_value = "")]
+    shard: Option<ShardChoice>,
     /// Do again what is already stored
     #[arg(long)]
     fresh: bool,
@@ -74,6 +75,7 @@ impl Progress for Lines<'_> {
 
 impl Run {
     pub(super) fn execute(self) -> Result<(), CliError> {
+        let shard = self.shard.map(told).transpose()?;
         let document = read_or(self.file.as_deref(), ExperimentFile::embedded)?;
         let mut file = ExperimentFile::read(&document)?;
         file.seeds = self.seeds.and_then(NonZeroU64::new).unwrap_or(file.seeds);
@@ -84,15 +86,35 @@ impl Run {
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
         let store = Store::open(&folder)?;
         keep_inputs(file.with_targets(&plan), &document, &folder)?;
-        self.run_missing(&plan, &store, &folder)?;
-        report(&plan, &analysis::load(&plan, &store)?, &folder)
-    }
-
-    fn run_missing(&self, plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
-        let watch = watch();
-        let mine = |place: usize| self.shard.is_none_or(|shard| shard.holds(place));
+        let mine = |place: usize| shard.is_none_or(|shard| shard.holds(place));
         let places = plan.runs.iter().enumerate();
         let mine: Vec<&RunSpec> = places.filter(|(i, _)| mine(*i)).map(|(_, run)| run).collect();
+        self.run_missing(&plan, &mine, &store, &folder)?;
+        let stored = store.keys()?;
+        let stored = plan.runs.iter().filter(|run| stored.contains(&run.key)).count();
+        match shard {
+            Some(shard) if stored < plan.runs.len() => {
+                say!(
+                    "shard {shard}: its {} runs are stored in {}, {stored} of the experiment's {}; \
+                     summary and figures come with the last",
+                    mine.len(),
+                    folder.display(),
+                    plan.runs.len()
+                );
+                Ok(())
+            }
+            _ => report(&plan, &analysis::load(&plan, &store)?, &folder),
+        }
+    }
+
+    fn run_missing(
+        &self,
+        plan: &Plan,
+        mine: &[&RunSpec],
+        store: &Store,
+        folder: &Path,
+    ) -> Result<(), CliError> {
+        let watch = watch();
         if self.fresh {
             store.remove(&mine.iter().map(|run| run.key.as_str()).collect())?;
         }
@@ -105,7 +127,7 @@ impl Run {
         let jobs = self.jobs.map_or_else(default_jobs, usize::from);
         {
             let bar = Bar::new(evaluations, watch.clone());
-            experiment::run(plan, &mine, store, jobs, &watch, &Lines { bar: &bar, plan })?;
+            experiment::run(plan, mine, store, jobs, &watch, &Lines { bar: &bar, plan })?;
         }
         if store.batch_count()? > MANY_BATCHES {
             store.compact()?;
@@ -123,6 +145,16 @@ impl Run {
     }
 }
 
+/// The shard that `--shard` means here.
+fn told(choice: ShardChoice) -> Result<Shard, CliError> {
+    let variable = |name: &str| Some(std::env::var_os(name)?.to_string_lossy().into_owned());
+    let (shard, variable) = choice.resolve(variable)?;
+    if let Some(variable) = variable {
+        eprintln!("shard {shard}, from {variable}");
+    }
+    Ok(shard)
+}
+
 /// Keeps what the experiment was, so that it can be run again from its results.
 fn keep_inputs(
     mut file: ExperimentFile,
@@ -132,18 +164,29 @@ fn keep_inputs(
     let robot = file.task.as_ref().and_then(|task| task.robot_file(document));
     if let Some(path) = robot {
         let robot = RobotFile::read(&Document::read(&path)?)?;
-        write_file(&folder.join("robot.toml"), toml::to_string(&robot)?.as_bytes())?;
+        keep(&folder.join("robot.toml"), &toml::to_string(&robot)?)?;
         file.task = file.task.map(|task| task.with_robot("robot.toml"));
     }
-    let (path, text) = (folder.join(EXPERIMENT), toml::to_string(&file)?);
-    if std::fs::read_to_string(&path).is_ok_and(|before| before != text) {
+    if keep(&folder.join(EXPERIMENT), &toml::to_string(&file)?)? {
         eprintln!(
             "note: {} holds runs of another version of this experiment; they stay there, and those \
              that no longer belong are left out of the summary",
             folder.display()
         );
     }
-    Ok(write_file(&path, text.as_bytes())?)
+    Ok(())
+}
+
+/// Writes a text, unless it is there already: then other shards may be reading it. Whether another
+/// text gave way to it.
+fn keep(path: &Path, text: &str) -> Result<bool, CliError> {
+    let before = std::fs::read_to_string(path).ok();
+    if before.as_deref() == Some(text) {
+        check_writable(path)?;
+    } else {
+        write_file(path, text.as_bytes())?;
+    }
+    Ok(before.is_some_and(|before| before != text))
 }
 
 /// Says what is unphysical about an experiment's robot.

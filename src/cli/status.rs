@@ -132,11 +132,7 @@ fn tell(results: &Results, standing: &Standing, batches: usize) -> Result<(), Cl
             (&plan.optimisers[run.optimiser].label, &plan.instances[run.instance].label);
         let space = if instance.is_empty() { "" } else { " " };
         let message = failure.message.lines().next().unwrap_or_default();
-        say!(
-            "{}: {optimiser}{space}{instance} seed {}: {message}",
-            failure.status,
-            run.seed
-        );
+        say!("{}: {optimiser}{space}{instance} seed {}: {message}", failure.status, run.seed);
     }
     if standing.failures.len() > MOST_SHOWN {
         say!("… and {} more failed; --json lists all", standing.failures.len() - MOST_SHOWN);

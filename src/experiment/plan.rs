@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 use std::num::NonZeroU64;
-use std::str::FromStr;
 
 use serde::Serialize;
 use toml::Spanned;
@@ -56,33 +55,6 @@ pub struct RunSpec {
     pub seed: u64,
     /// Evaluations that the run may spend.
     pub budget: u64,
-}
-
-/// A disjoint part of an experiment, `index` of `count`, counted from zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shard {
-    index: usize,
-    count: usize,
-}
-
-impl FromStr for Shard {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (index, count) = text.split_once('/').ok_or("expected I/N, such as 0/4")?;
-        match (index.parse(), count.parse()) {
-            (Ok(index), Ok(count)) if index < count => Ok(Self { index, count }),
-            (Ok(_), Ok(_)) => Err("expected I/N with I from 0 to N - 1"),
-            _ => Err("expected I/N with two whole numbers, such as 0/4"),
-        }
-    }
-}
-
-impl Shard {
-    /// Whether the run at this place of a plan belongs to the shard.
-    pub fn holds(self, place: usize) -> bool {
-        place % self.count == self.index
-    }
 }
 
 impl Plan {

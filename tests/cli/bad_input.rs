@@ -239,6 +239,9 @@ fn arguments() {
         ("no_verb", &[][..]),
         ("shard_too_large", &["run", "--shard", "4/4"][..]),
         ("shard_not_a_fraction", &["run", "--shard", "half"]),
+        ("shard_is_a_file", &["run", "--shard", "experiment.toml"]),
+        ("shard_of_none", &["run", "--shard", "/0"]),
+        ("shard_unscheduled", &["run", "--shard"]),
         ("no_seeds", &["run", "--seeds", "0"]),
         ("no_jobs", &["run", "--jobs", "0"]),
     ] {

@@ -22,16 +22,21 @@ impl Folder {
         self.0.path()
     }
 
-    /// Runs `driftless` here, with nothing of the caller's terminal in its output.
+    /// Runs `driftless` here.
     pub(crate) fn run(&self, args: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_driftless"))
-            .args(args)
-            .current_dir(self.path())
-            .env("LC_ALL", "C.UTF-8")
-            .env("NO_COLOR", "1")
-            .env_remove("RUST_BACKTRACE")
-            .output()
-            .unwrap()
+        self.command(args).output().unwrap()
+    }
+
+    /// `driftless`, to be run here with nothing of the caller's terminal in its output, and outside
+    /// of any scheduler.
+    pub(crate) fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_driftless"));
+        command.args(args).current_dir(self.path());
+        command.env("LC_ALL", "C.UTF-8").env("NO_COLOR", "1").env_remove("RUST_BACKTRACE");
+        for variable in ["HQ_TASK_ID", "JOB_COMPLETION_INDEX", "SLURM_ARRAY_TASK_ID"] {
+            command.env_remove(variable);
+        }
+        command
     }
 }
 

@@ -7,5 +7,7 @@ mod experiments;
 mod export;
 mod folder;
 #[cfg(feature = "harness")]
+mod shards;
+#[cfg(feature = "harness")]
 mod survival;
 mod verbs;

@@ -120,7 +120,11 @@ fn shards_share_a_folder_that_is_compacted_and_read_meanwhile() {
     let (folder, calm) = undisturbed();
     let shared = folder.path().join("shared");
     let shards = ["0/4", "1/4", "2/4", "3/4"].map(|shard| {
-        start(&folder, &shard.replace('/', "-"), &["brief.toml", "--out", "shared", "--shard", shard, "--jobs", "1"])
+        start(
+            &folder,
+            &shard.replace('/', "-"),
+            &["brief.toml", "--out", "shared", "--shard", shard, "--jobs", "1"],
+        )
     });
     let mut shards: Vec<Child> = shards.into();
     let mut before = 0;
@@ -138,7 +142,9 @@ fn shards_share_a_folder_that_is_compacted_and_read_meanwhile() {
         compactions += 1;
     }
     assert!(compactions > 2, "only {compactions} compactions");
-    shards.into_iter().for_each(|mut shard| assert!(shard.wait().unwrap().success()));
+    for mut shard in shards {
+        assert!(shard.wait().unwrap().success());
+    }
     let output = folder.run(&["compact", "shared"]);
     assert_eq!(stdout(&output).matches("1 files a table").count(), 1, "{}", stdout(&output));
     assert_eq!(results(&shared), calm);

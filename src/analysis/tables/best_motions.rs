@@ -66,9 +66,8 @@ fn same_but_for_weight(a: &Reorientation, b: &Reorientation) -> bool {
 /// Which best motions no other of the same task but for the weight beats in residual and duration; none
 /// unless the weight varies.
 pub(super) fn pareto(field: &Field<'_>) -> PolarsResult<Option<Table>> {
-    let tasks = best(field).filter_map(|run| {
-        Some((run, field.plan.instances[run.instance].reorientation()?))
-    });
+    let tasks = best(field)
+        .filter_map(|run| Some((run, field.plan.instances[run.instance].reorientation()?)));
     let tasks: Vec<(&Run, &Reorientation)> = tasks.collect();
     let varies = tasks.windows(2).any(|w| w[0].1.task().base_weight != w[1].1.task().base_weight);
     if !varies {

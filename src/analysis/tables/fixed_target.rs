@@ -42,7 +42,8 @@ pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
     let lines = lines(field);
     let intervals: Vec<[f64; 2]> =
         lines.par_iter().map(|line| interval(&line.trials, expected_running_time)).collect();
-    let quartiles: Vec<[f64; 3]> = lines.iter().map(|line| quartiles(times(&line.trials))).collect();
+    let quartiles: Vec<[f64; 3]> =
+        lines.iter().map(|line| quartiles(times(&line.trials))).collect();
     let solved = |line: &Line<'_>| line.trials.iter().filter(|trial| trial.solved).count();
     let frame = df!(
         "instance" => lines.iter().map(|l| l.group).collect::<Vec<_>>(),

@@ -30,7 +30,8 @@ impl Blocks {
             [] => return None,
             [only] => ("seeds", by_seed(only)),
             many => {
-                let row = |row: &Vec<Vec<&Run>>| row.iter().map(|cell| median(&costs(cell))).collect();
+                let row =
+                    |row: &Vec<Vec<&Run>>| row.iter().map(|cell| median(&costs(cell))).collect();
                 ("instances", many.iter().map(row).collect())
             }
         };

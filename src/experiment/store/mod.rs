@@ -193,7 +193,8 @@ impl Store {
             Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(BTreeSet::new()),
             Err(source) => Err(io_error("list", &folder, source)),
             Ok(entries) => {
-                let names: io::Result<_> = entries.filter_map(|entry| name(entry).transpose()).collect();
+                let names: io::Result<_> =
+                    entries.filter_map(|entry| name(entry).transpose()).collect();
                 names.map_err(|source| io_error("list", &folder, source))
             }
         }

@@ -1,0 +1,269 @@
+//! Parts of an experiment, each for a process of its own: which one, the user says or a scheduler.
+
+use std::fmt;
+use std::str::FromStr;
+
+use miette::Diagnostic;
+
+/// What Slurm sets in the tasks of an array: the task's number, the least number, the step from one
+/// number to the next, and how many tasks there are.
+const SLURM: [&str; 4] = [
+    "SLURM_ARRAY_TASK_ID",
+    "SLURM_ARRAY_TASK_MIN",
+    "SLURM_ARRAY_TASK_STEP",
+    "SLURM_ARRAY_TASK_COUNT",
+];
+
+/// Where schedulers put a task's number, the innermost first: the workers of `HyperQueue` are jobs of
+/// another scheduler.
+const NUMBERS: [&str; 3] = ["HQ_TASK_ID", "JOB_COMPLETION_INDEX", SLURM[0]];
+
+/// A disjoint part of an experiment, `index` of `count`, counted from zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    index: usize,
+    count: usize,
+}
+
+impl Shard {
+    fn new(index: usize, count: usize) -> Option<Self> {
+        (index < count).then_some(Self { index, count })
+    }
+
+    /// Whether the run at this place of a plan belongs to the shard.
+    pub fn holds(self, place: usize) -> bool {
+        place % self.count == self.index
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
+}
+
+/// How much of a shard's name is given, and how much a scheduler has to tell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ShardChoice {
+    /// `I/N`: index and count are given.
+    Given(Shard),
+    /// `/N`: the count is given.
+    OfCount(usize),
+    /// Nothing is given.
+    Scheduled,
+}
+
+impl FromStr for ShardChoice {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        const EXPECTED: &str = "expected I/N such as 0/4, or /N, or nothing where a scheduler tells; \
+                                an experiment file stands before --shard";
+        if text.is_empty() {
+            return Ok(Self::Scheduled);
+        }
+        let (index, count) = text.split_once('/').ok_or(EXPECTED)?;
+        let count = count.parse().map_err(|_| EXPECTED)?;
+        if count == 0 {
+            return Err("expected at least one part");
+        }
+        if index.is_empty() {
+            return Ok(Self::OfCount(count));
+        }
+        let shard = Shard::new(index.parse().map_err(|_| EXPECTED)?, count);
+        shard.map(Self::Given).ok_or("expected I/N with I from 0 to N - 1")
+    }
+}
+
+impl ShardChoice {
+    /// The shard meant, and the variable that told its index, if one did. `variable` looks up what
+    /// the scheduler set in the environment.
+    pub fn resolve(
+        self,
+        variable: impl Fn(&str) -> Option<String>,
+    ) -> Result<(Shard, Option<&'static str>), ShardError> {
+        let given = match self {
+            Self::Given(shard) => return Ok((shard, None)),
+            Self::OfCount(count) => Some(count),
+            Self::Scheduled => None,
+        };
+        let name = NUMBERS.into_iter().find(|name| variable(name).is_some());
+        let name = name.ok_or(ShardError::NoScheduler)?;
+        let (index, count) = match given {
+            Some(count) => (whole(name, &variable)?, count),
+            None if name == SLURM[0] => slurm(&variable)?,
+            None => return Err(ShardError::NoCount(name)),
+        };
+        let shard =
+            Shard::new(index, count).ok_or(ShardError::OutOfRange { name, index, count })?;
+        Ok((shard, Some(name)))
+    }
+}
+
+/// Index and count of a task of a Slurm array.
+fn slurm(variable: &impl Fn(&str) -> Option<String>) -> Result<(usize, usize), ShardError> {
+    let [id, min, step, count] = SLURM.map(|name| whole(name, variable));
+    let (id, min, step, count) = (id?, min?, step?, count?);
+    let index = id.checked_sub(min).filter(|from_min| step > 0 && from_min % step == 0);
+    let index = index.map(|from_min| from_min / step).filter(|index| *index < count);
+    Ok((index.ok_or(ShardError::Gap { id, min, step, count })?, count))
+}
+
+fn whole(
+    name: &'static str,
+    variable: &impl Fn(&str) -> Option<String>,
+) -> Result<usize, ShardError> {
+    let value = variable(name).ok_or(ShardError::NotSet(name))?;
+    value.parse().map_err(|_| ShardError::NotANumber { name, value })
+}
+
+/// Why it is not known which shard is meant.
+#[derive(Debug, PartialEq, Eq, thiserror::Error, Diagnostic)]
+pub enum ShardError {
+    /// No variable is set.
+    #[error("no scheduler tells which shard this is: none of {} is set", NUMBERS.join(", "))]
+    #[diagnostic(help("write --shard I/N, such as --shard 0/4 for the first of four"))]
+    NoScheduler,
+    /// The scheduler does not tell how many tasks there are.
+    #[error("{0} tells which shard this is, but not of how many")]
+    #[diagnostic(help("write --shard /N, such as --shard /4 in each of four tasks"))]
+    NoCount(&'static str),
+    /// One of several variables is missing.
+    #[error("{} tells which shard this is, but {} is not set", SLURM[0], .0)]
+    #[diagnostic(help("write --shard /N, such as --shard /4 in an array numbered 0-3"))]
+    NotSet(&'static str),
+    /// A variable holds something else than a number.
+    #[error("{name} is `{value}`, expected a whole number from 0")]
+    #[diagnostic(help("write --shard I/N, such as --shard 0/4 for the first of four"))]
+    NotANumber {
+        /// The variable.
+        name: &'static str,
+        /// Its value.
+        value: String,
+    },
+    /// The task's number is not below the count given.
+    #[error("{name} is {index}, but shards of {count} are numbered from 0 to {}", .count - 1)]
+    #[diagnostic(help("number the tasks from 0, such as 0-3 with --shard /4"))]
+    OutOfRange {
+        /// The variable.
+        name: &'static str,
+        /// Its value.
+        index: usize,
+        /// How many shards there are.
+        count: usize,
+    },
+    /// The task's number is none that an array without gaps has.
+    #[error("{} is {id}, which is none of {count} numbers from {min} in steps of {step}", SLURM[0])]
+    #[diagnostic(help(
+        "where an array has gaps write --shard /N, such as --shard /4 in tasks of an array \
+         numbered 0-3"
+    ))]
+    Gap {
+        /// The task's number.
+        id: usize,
+        /// The least number.
+        min: usize,
+        /// The step from one number to the next.
+        step: usize,
+        /// How many tasks there are.
+        count: usize,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What `--shard` with this value makes of these variables.
+    fn resolve(value: &str, variables: &[(&str, &str)]) -> Result<String, ShardError> {
+        let look_up = |name: &str| {
+            let found = variables.iter().find(|(variable, _)| *variable == name);
+            found.map(|(_, value)| (*value).to_owned())
+        };
+        let choice: ShardChoice = value.parse().unwrap();
+        let (shard, name) = choice.resolve(look_up)?;
+        Ok(name.map_or_else(|| shard.to_string(), |name| format!("{shard} {name}")))
+    }
+
+    fn array<'a>(
+        id: &'a str,
+        min: &'a str,
+        step: &'a str,
+        count: &'a str,
+    ) -> [(&'a str, &'a str); 4] {
+        [(SLURM[0], id), (SLURM[1], min), (SLURM[2], step), (SLURM[3], count)]
+    }
+
+    #[test]
+    fn shards_are_disjoint_and_leave_nothing_out() {
+        for count in 1..6 {
+            let shards: Vec<_> = (0..count).map(|i| Shard::new(i, count).unwrap()).collect();
+            for place in 0..20 {
+                assert_eq!(shards.iter().filter(|shard| shard.holds(place)).count(), 1);
+            }
+        }
+    }
+
+    /// `sbatch --array=` 0-3, 1-4, 1-7:2, 10-30:10 and 2.
+    #[test]
+    fn slurm_arrays_tell_index_and_count() {
+        for ([id, min, step, count], shard) in [
+            (["2", "0", "1", "4"], "2/4"),
+            (["4", "1", "1", "4"], "3/4"),
+            (["5", "1", "2", "4"], "2/4"),
+            (["10", "10", "10", "3"], "0/3"),
+            (["2", "2", "1", "1"], "0/1"),
+        ] {
+            let told = resolve("", &array(id, min, step, count));
+            assert_eq!(told, Ok(format!("{shard} SLURM_ARRAY_TASK_ID")));
+        }
+    }
+
+    /// `sbatch --array=0,2`: the second task is not the third of two; with a count it is the third
+    /// of four.
+    #[test]
+    fn arrays_with_gaps_need_a_count() {
+        let task = array("2", "0", "1", "2");
+        assert_eq!(resolve("", &task), Err(ShardError::Gap { id: 2, min: 0, step: 1, count: 2 }));
+        assert_eq!(resolve("/4", &task), Ok("2/4 SLURM_ARRAY_TASK_ID".to_owned()));
+        for broken in
+            [array("1", "2", "1", "4"), array("3", "0", "2", "4"), array("1", "0", "0", "4")]
+        {
+            assert!(matches!(resolve("", &broken), Err(ShardError::Gap { .. })));
+        }
+    }
+
+    #[test]
+    fn the_innermost_scheduler_tells() {
+        let slurm = array("1", "0", "1", "4");
+        let kubernetes = [&[("JOB_COMPLETION_INDEX", "2")][..], &slurm].concat();
+        let all = [&[("HQ_TASK_ID", "3")][..], &kubernetes].concat();
+        for (variables, told) in [
+            (&slurm[..], "1/4 SLURM_ARRAY_TASK_ID"),
+            (&kubernetes, "2/4 JOB_COMPLETION_INDEX"),
+            (&all, "3/4 HQ_TASK_ID"),
+        ] {
+            assert_eq!(resolve("/4", variables), Ok(told.to_owned()));
+            assert_eq!(resolve("0/7", variables), Ok("0/7".to_owned()));
+        }
+        // The count of the array outside is not that of the tasks inside.
+        assert_eq!(resolve("", &all), Err(ShardError::NoCount("HQ_TASK_ID")));
+        assert_eq!(resolve("", &kubernetes), Err(ShardError::NoCount("JOB_COMPLETION_INDEX")));
+    }
+
+    #[test]
+    fn what_is_not_told_is_an_error() {
+        for value in ["", "/4"] {
+            assert_eq!(resolve(value, &[]), Err(ShardError::NoScheduler));
+        }
+        let name = "HQ_TASK_ID";
+        for (text, error) in [
+            ("4", ShardError::OutOfRange { name, index: 4, count: 4 }),
+            ("-1", ShardError::NotANumber { name, value: "-1".to_owned() }),
+            ("", ShardError::NotANumber { name, value: String::new() }),
+        ] {
+            assert_eq!(resolve("/4", &[(name, text)]), Err(error));
+        }
+        assert_eq!(resolve("", &[(SLURM[0], "1")]), Err(ShardError::NotSet(SLURM[1])));
+    }
+}
