@@ -100,15 +100,20 @@ impl Scp {
         oracle: &mut Oracle<'_>,
         rng: &mut Rng,
     ) -> Result<(), Stop> {
-        let usual = if first.is_some() { 1 } else { 100 };
-        let starts = self.starts.map_or(usual, NonZeroUsize::get);
+        let mut random = self.random_starts();
         if let Some(first) = first {
             self.follow(oracle, first)?;
+            random = self.starts.map_or(0, |starts| starts.get() - 1);
         }
-        for _ in usize::from(first.is_some())..starts {
+        for _ in 0..random {
             self.follow(oracle, &Self::start(oracle.bounds(), rng))?;
         }
         Ok(())
+    }
+
+    /// Starts of a run that follows no other optimiser.
+    pub fn random_starts(&self) -> usize {
+        self.starts.map_or(100, NonZeroUsize::get)
     }
 
     /// Draws a start uniformly from the box shrunk about its middle, by the square of a number drawn
