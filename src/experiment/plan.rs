@@ -17,7 +17,7 @@ use crate::problem::{Accuracy, Boxes};
 use crate::task::Task;
 
 /// Raised when a change makes the same run give another result.
-const RESULT_VERSION: u32 = 3;
+const RESULT_VERSION: u32 = 4;
 
 /// An experiment spelt out.
 #[derive(Debug, Clone)]
