@@ -107,7 +107,7 @@ pub(super) fn spell_out(file: &mut DeTable<'_>, document: &Document) -> Result<(
     for entry in field.iter() {
         match entry.get_ref() {
             DeValue::Table(table) => {
-                let (beside, choices) = combinations(table.clone(), document)?;
+                let (beside, choices) = combinations(table.clone(), entry.span(), document)?;
                 for choice in choices {
                     spelt_out.push(entrant_table(beside.clone(), choice, entry.span()));
                 }
@@ -132,6 +132,7 @@ fn entrant_table<'i>(
 /// What stands beside the optimiser, and the optimiser with every combination of the sweep.
 fn combinations<'i>(
     mut table: DeTable<'i>,
+    span: Range<usize>,
     document: &Document,
 ) -> Result<(DeTable<'i>, Vec<DeTable<'i>>), InputError> {
     let sweep = table.remove(SWEEP);
@@ -139,6 +140,10 @@ fn combinations<'i>(
     for (key, value) in table {
         let is_beside = BESIDE.contains(&key.get_ref().as_ref());
         (if is_beside { &mut beside } else { &mut choice }).insert(key, value);
+    }
+    if choice.is_empty() {
+        let message = "found no optimiser, expected one with its settings, such as `pso = {}`";
+        return Err(document.error_at(span, message, None));
     }
     check_choice(&choice, document)?;
     let mut choices = vec![choice];
@@ -152,7 +157,7 @@ fn combinations<'i>(
     Ok((beside, choices))
 }
 
-/// Whether a table has but one optimiser. That there is one at all, serde says.
+/// Whether a table has but one optimiser.
 fn check_choice(choice: &DeTable<'_>, document: &Document) -> Result<(), InputError> {
     let known: Vec<&str> = Settings::all().iter().map(Settings::name).collect();
     let is_known = |key: &Spanned<DeString<'_>>| known.contains(&key.get_ref().as_ref());

@@ -4,4 +4,6 @@ mod bad_input;
 #[cfg(feature = "harness")]
 mod experiments;
 mod folder;
+#[cfg(feature = "harness")]
+mod sweeps;
 mod verbs;
