@@ -76,11 +76,22 @@ impl Document {
     /// Parses the text as `T`; every key that it leaves out, at any depth, is taken from the first
     /// of `defaults` that has it.
     pub fn parse_over<T: DeserializeOwned>(&self, defaults: &[&str]) -> Result<T, InputError> {
+        self.parse_reshaped(defaults, |_| Ok(()))
+    }
+
+    /// Like [`parse_over`](Self::parse_over); the tree of keys and values is changed by `reshape` before
+    /// it is parsed.
+    pub fn parse_reshaped<T: DeserializeOwned>(
+        &self,
+        defaults: &[&str],
+        reshape: impl FnOnce(&mut DeTable<'_>) -> Result<(), InputError>,
+    ) -> Result<T, InputError> {
         let mut table = self.table()?;
         for text in defaults {
             let default = DeTable::parse(text).map_err(|error| self.content_error(&error))?;
             fill(table.get_mut(), default.into_inner());
         }
+        reshape(table.get_mut())?;
         T::deserialize(toml::Deserializer::from(table)).map_err(|error| self.content_error(&error))
     }
 

@@ -1,6 +1,8 @@
 //! `driftless check`.
 
 use std::path::PathBuf;
+#[cfg(feature = "harness")]
+use std::time::Duration;
 
 use clap::Args;
 use serde::Serialize;
@@ -16,6 +18,9 @@ pub(super) struct Check {
     /// A task, robot, replay or experiment file
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
+    /// Do not measure how long an experiment takes
+    #[arg(long)]
+    no_estimate: bool,
 }
 
 /// What a file is, told by its top-level keys.
@@ -67,31 +72,43 @@ impl Check {
                 warn_of(&problem.task().robot);
                 print_resolved("task", &file)?;
             }
-            Kind::Experiment => check_experiment(&document)?,
+            Kind::Experiment => check_experiment(&document, !self.no_estimate)?,
         }
         Ok(())
     }
 }
 
 #[cfg(feature = "harness")]
-fn check_experiment(document: &Document) -> Result<(), CliError> {
-    use super::run::warn_of_robot;
-    use crate::experiment::{ExperimentFile, Plan};
+fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError> {
+    use super::run::{default_jobs, warn_of_budgets, warn_of_robot};
+    use crate::experiment::{self, ExperimentFile, Plan};
+    use indicatif::HumanDuration;
     let file = ExperimentFile::read(document)?;
     let plan = Plan::new(&file, document)?;
     warn_of_robot(&plan);
-    let seeds = file.seeds;
+    warn_of_budgets(&plan);
+    let own = plan.optimisers.iter().map(|entrant| entrant.seeds.unwrap_or(file.seeds));
+    let seeds = match (own.clone().min(), own.max()) {
+        (Some(fewest), Some(most)) if fewest < most => format!("{fewest} to {most}"),
+        _ => file.seeds.to_string(),
+    };
     print_resolved("experiment", &file.with_targets(&plan))?;
     let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
     say!(
         "\n# {} runs: {instances} instances × {optimisers} optimisers × {seeds} seeds",
         plan.runs.len()
     );
+    if estimate {
+        let jobs = default_jobs();
+        let time = experiment::estimate(&plan, jobs)?.max(Duration::from_secs(1));
+        let threads = if jobs == 1 { "thread" } else { "threads" };
+        say!("# about {} on {jobs} {threads} (measured just now)", HumanDuration(time));
+    }
     Ok(())
 }
 
 #[cfg(not(feature = "harness"))]
-fn check_experiment(_: &Document) -> Result<(), CliError> {
+fn check_experiment(_: &Document, _: bool) -> Result<(), CliError> {
     let message = "this is an experiment; this build leaves experiments out".to_owned();
     Err(CliError::Usage { message, help: None })
 }

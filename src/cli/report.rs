@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::CliError;
 use super::results::{Results, ResultsFolder};
+use super::run::warn_of_budgets;
 use crate::analysis::tables::{Table, tables};
 use crate::analysis::{self, Run, best_run, convergence, csv, latex, markdown, render, summary};
 use crate::experiment::Plan;
@@ -50,6 +51,7 @@ pub(super) fn report(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), Cli
         say!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
     }
     say!("{}", render(&summary(plan, runs)?)?);
+    warn_of_budgets(plan);
     let figures = folder.join("figures");
     let curves = convergence(plan, runs);
     plot::convergence(&curves, plan.cost_symbol()).save(&figures, "convergence")?;

@@ -78,9 +78,12 @@ impl Run {
         let shard = self.shard.map(told).transpose()?;
         let document = read_or(self.file.as_deref(), ExperimentFile::embedded)?;
         let mut file = ExperimentFile::read(&document)?;
-        file.seeds = self.seeds.and_then(NonZeroU64::new).unwrap_or(file.seeds);
-        let budget = self.budget.and_then(NonZeroU64::new);
-        file.budget.evaluations = budget.unwrap_or(file.budget.evaluations);
+        if let Some(seeds) = self.seeds.and_then(NonZeroU64::new) {
+            file = file.with_seeds(seeds);
+        }
+        if let Some(evaluations) = self.budget.and_then(NonZeroU64::new) {
+            file = file.with_budget(evaluations);
+        }
         let plan = Plan::new(&file, &document)?;
         warn_of_robot(&plan);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
@@ -197,6 +200,16 @@ pub(super) fn warn_of_robot(plan: &Plan) {
     }
 }
 
-fn default_jobs() -> usize {
+/// Says when a comparison is not one at the same price.
+pub(super) fn warn_of_budgets(plan: &Plan) {
+    if plan.is_uneven() {
+        eprintln!(
+            "warning: budgets differ within the field, so final costs do not compare; evaluations to a \
+             target do"
+        );
+    }
+}
+
+pub(super) fn default_jobs() -> usize {
     std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }

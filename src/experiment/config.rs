@@ -6,11 +6,10 @@ use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::{FunctionTable, Plan, Targets, functions};
+use super::{EntrantTable, FunctionTable, Plan, RandomPoses, Targets, field, functions};
 use crate::input::{Document, Fraction, InputError, Positive, count};
-use crate::optimiser::Settings;
 use crate::problem::{DEFAULTS as TASK_DEFAULTS, TrajectoryTable};
-use crate::task::TaskTable;
+use crate::task::{PoseTable, TaskTable};
 
 const DEFAULTS: &str = include_str!("defaults.toml");
 
@@ -42,7 +41,7 @@ pub struct ExperimentFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub functions: Option<FunctionTable>,
     /// The field.
-    pub optimiser: Spanned<Vec<Spanned<Settings>>>,
+    pub optimiser: Spanned<Vec<EntrantTable>>,
 }
 
 /// The `budget` table.
@@ -73,7 +72,22 @@ pub struct Sweep {
     /// Free coefficients a joint.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub terms: Vec<Spanned<usize>>,
+    /// Evaluations a run, instead of the budget's.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub budget: Vec<Evaluations>,
+    /// Pairs of start and goal; what one leaves out is the task's.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub pose: Vec<PoseTable>,
+    /// Pairs drawn at random instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub random_poses: Option<Spanned<RandomPoses>>,
 }
+
+/// Evaluations that a run may make, checked where they stand in a list.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Evaluations(
+    #[serde(deserialize_with = "count::<1_000_000_000_000, _, _>")] pub NonZeroU64,
+);
 
 impl Sweep {
     fn is_empty(&self) -> bool {
@@ -92,12 +106,30 @@ impl ExperimentFile {
             }
         }
         let problem = if on_functions { functions::DEFAULTS } else { TASK_DEFAULTS };
-        let file: Self = document.parse_over(&[DEFAULTS, problem])?;
+        let file: Self = document
+            .parse_reshaped(&[DEFAULTS, problem], |table| field::spell_out(table, document))?;
         if file.optimiser.get_ref().is_empty() {
             let message = "found no optimiser, expected at least one `[[optimiser]]`";
             return Err(document.error_at(file.optimiser.span(), message, None));
         }
         Ok(file)
+    }
+
+    /// The same file with this number of seeds for every optimiser.
+    #[must_use]
+    pub fn with_seeds(mut self, seeds: NonZeroU64) -> Self {
+        self.seeds = seeds;
+        self.optimiser.get_mut().iter_mut().for_each(|entrant| entrant.seeds = None);
+        self
+    }
+
+    /// The same file with this budget for every run.
+    #[must_use]
+    pub fn with_budget(mut self, evaluations: NonZeroU64) -> Self {
+        self.budget = BudgetTable { evaluations };
+        self.sweep.budget.clear();
+        self.optimiser.get_mut().iter_mut().for_each(|entrant| entrant.budget = None);
+        self
     }
 
     /// The same file with the targets that the plan has, wherever they came from.

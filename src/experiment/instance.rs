@@ -1,6 +1,7 @@
 //! What the runs of an experiment minimise.
 
 use std::fmt;
+use std::num::NonZeroU64;
 use std::sync::Arc;
 
 use crate::problem::{
@@ -16,6 +17,8 @@ pub struct Instance {
     pub group: String,
     /// The problem.
     pub subject: Subject,
+    /// Evaluations that each run may spend, instead of the experiment's budget.
+    pub budget: Option<NonZeroU64>,
     /// Costs whose success rate the summary shows.
     pub targets: Vec<f64>,
 }
@@ -60,13 +63,14 @@ impl Instance {
     /// The reorientation task.
     pub fn task(label: String, problem: Arc<Reorientation>, boxes: Boxes) -> Self {
         let subject = Subject::Task { problem, boxes };
-        Self { group: label.clone(), label, subject, targets: Vec::new() }
+        Self { group: label.clone(), label, subject, budget: None, targets: Vec::new() }
     }
 
     /// Any other problem.
     pub fn other(label: &str, name: &str, problem: Arc<dyn Problem + Send + Sync>) -> Self {
         let subject = Subject::Other { name: name.to_owned(), problem };
-        Self { label: label.to_owned(), group: label.to_owned(), subject, targets: Vec::new() }
+        let (label, group) = (label.to_owned(), label.to_owned());
+        Self { label, group, subject, budget: None, targets: Vec::new() }
     }
 
     /// Whether this is the reorientation task.

@@ -2,9 +2,12 @@
 
 mod caught;
 mod config;
+mod estimate;
+mod field;
 mod functions;
 mod instance;
 mod plan;
+mod poses;
 mod record;
 mod runner;
 mod shard;
@@ -12,10 +15,13 @@ mod store;
 mod sweep;
 mod targets;
 
-pub use config::{BudgetTable, ExperimentFile, Sweep};
+pub use config::{BudgetTable, Evaluations, ExperimentFile, Sweep};
+pub use estimate::estimate;
+pub use field::EntrantTable;
 pub use functions::{Dimension, FunctionTable};
 pub use instance::{Instance, Subject};
 pub use plan::{Entrant, Plan, RunSpec};
+pub use poses::RandomPoses;
 pub use record::{Record, Status};
 pub use runner::{Progress, RunError, run};
 pub use shard::{Shard, ShardChoice, ShardError};

@@ -1,13 +1,14 @@
 //! An experiment spelt out: every instance, every run, every key.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::num::NonZeroU64;
 
 use serde::Serialize;
 use toml::Spanned;
 
+use super::field::entrants;
 use super::record::FORMAT;
-use super::{ExperimentFile, Instance, Subject, Targets, sweep};
+use super::{EntrantTable, ExperimentFile, Instance, Subject, Targets, sweep};
 use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::optimiser::Settings;
@@ -15,7 +16,7 @@ use crate::problem::{Accuracy, Boxes};
 use crate::task::Task;
 
 /// Raised when a change makes the same run give another result.
-const RESULT_VERSION: u32 = 3;
+const RESULT_VERSION: u32 = 4;
 
 /// An experiment spelt out.
 #[derive(Debug, Clone)]
@@ -33,11 +34,16 @@ pub struct Plan {
 /// One optimiser of the field.
 #[derive(Debug, Clone)]
 pub struct Entrant {
-    /// Optimiser and, on the task, formulation; with changed settings where the field has these more
-    /// than once.
+    /// The label given, or optimiser and, on the task, formulation; with changed settings where the
+    /// field has these more than once.
     pub label: String,
     /// The settings.
     pub settings: Settings,
+    /// Number of seeds, instead of the experiment's.
+    pub seeds: Option<NonZeroU64>,
+    /// Evaluations that each of its runs may spend, instead of the experiment's or the instance's
+    /// budget.
+    pub budget: Option<NonZeroU64>,
 }
 
 /// One optimiser on one instance with one seed.
@@ -74,9 +80,9 @@ impl Plan {
         if let Some(targets) = &file.targets {
             Targets::give(targets, &mut instances, document)?;
         }
-        let field: Vec<Settings> =
-            file.optimiser.get_ref().iter().map(|settings| settings.get_ref().clone()).collect();
-        let plan = Self::over(&file.name, instances, &field, file.seeds, file.budget.evaluations);
+        check_budgets(file, document)?;
+        let field = file.optimiser.get_ref();
+        let plan = Self::of(&file.name, instances, field, file.seeds, file.budget.evaluations);
         let mut keys = HashSet::new();
         if let Some(twin) = plan.runs.iter().find(|run| !keys.insert(&run.key)) {
             let message = format!(
@@ -85,6 +91,7 @@ impl Plan {
             );
             return Err(document.error_at(file.optimiser.span(), message, None));
         }
+        check_labels(&plan, field, document)?;
         Ok(plan)
     }
 
@@ -97,12 +104,23 @@ impl Plan {
         seeds: NonZeroU64,
         budget: NonZeroU64,
     ) -> Self {
-        let budget = budget.get();
+        let field: Vec<EntrantTable> = field.iter().cloned().map(EntrantTable::from).collect();
+        Self::of(name, instances, &field, seeds, budget)
+    }
+
+    fn of(
+        name: &str,
+        instances: Vec<Instance>,
+        field: &[EntrantTable],
+        seeds: NonZeroU64,
+        budget: NonZeroU64,
+    ) -> Self {
         let optimisers = entrants(field, instances.iter().any(Instance::is_task));
         let mut runs = Vec::new();
         for (i, instance) in instances.iter().enumerate() {
             for (o, entrant) in optimisers.iter().enumerate() {
-                runs.extend((1..=seeds.get()).map(|seed| {
+                let budget = entrant.budget.or(instance.budget).unwrap_or(budget).get();
+                runs.extend((1..=entrant.seeds.unwrap_or(seeds).get()).map(|seed| {
                     let recipe = recipe(instance, &entrant.settings, seed, budget);
                     RunSpec {
                         key: digest(&recipe),
@@ -118,6 +136,12 @@ impl Plan {
         Self { name: name.to_owned(), instances, optimisers, runs }
     }
 
+    /// Whether some optimisers may spend more than others on the same instance.
+    pub fn is_uneven(&self) -> bool {
+        let mut pairs = self.runs.iter().zip(self.runs.iter().skip(1));
+        pairs.any(|(a, b)| a.instance == b.instance && a.budget != b.budget)
+    }
+
     /// The letter for costs: the paper's `J` where its task is among the instances.
     pub fn cost_symbol(&self) -> &'static str {
         if self.instances.iter().any(Instance::is_task) { "J" } else { "f" }
@@ -126,8 +150,8 @@ impl Plan {
 
 /// Whether every optimiser of a field can search test functions: those have no derivatives, and
 /// none of the task's formulations.
-fn check_field(field: &[Spanned<Settings>], document: &Document) -> Result<(), InputError> {
-    for spanned in field {
+fn check_field(field: &[EntrantTable], document: &Document) -> Result<(), InputError> {
+    for EntrantTable { settings: spanned, .. } in field {
         let settings = spanned.get_ref();
         let name = settings.name();
         let default = Settings::by_name(name).map(|default| default.formulation());
@@ -143,22 +167,36 @@ fn check_field(field: &[Spanned<Settings>], document: &Document) -> Result<(), I
     Ok(())
 }
 
-/// Labels the field: optimiser and, on the task, formulation, with the settings that differ from the
-/// default where the field has these more than once.
-fn entrants(field: &[Settings], on_task: bool) -> Vec<Entrant> {
-    let plain = |s: &Settings| {
-        if on_task { format!("{}/{}", s.title(), s.formulation().name()) } else { s.title() }
-    };
-    let mut count = HashMap::new();
-    for settings in field {
-        *count.entry(plain(settings)).or_insert(0) += 1;
+/// Whether budgets are set in one way only: for each optimiser, or for each instance.
+fn check_budgets(file: &ExperimentFile, document: &Document) -> Result<(), InputError> {
+    let own = file.optimiser.get_ref().iter().find_map(|entrant| entrant.budget.as_ref());
+    match own.filter(|_| !file.sweep.budget.is_empty()) {
+        Some(budget) => {
+            let message = "found a budget of an optimiser's own beside a sweep of budgets, expected one of them";
+            Err(document.error_at(budget.span(), message, None))
+        }
+        None => Ok(()),
     }
-    let label = |settings: &Settings| {
-        let plain = plain(settings);
-        let changed = if count[&plain] > 1 { settings.changed() } else { Vec::new() };
-        std::iter::once(plain).chain(changed).collect::<Vec<_>>().join(" ")
-    };
-    field.iter().map(|s| Entrant { label: label(s), settings: s.clone() }).collect()
+}
+
+/// Whether labels tell the optimisers apart.
+fn check_labels(
+    plan: &Plan,
+    field: &[EntrantTable],
+    document: &Document,
+) -> Result<(), InputError> {
+    let mut labels = HashSet::new();
+    for (entrant, table) in plan.optimisers.iter().zip(field) {
+        if entrant.label.is_empty() || !labels.insert(&entrant.label) {
+            let message = format!(
+                "found label `{}`, expected one that tells this optimiser from the others",
+                entrant.label
+            );
+            let span = table.label.as_ref().map_or(table.settings.span(), Spanned::span);
+            return Err(document.error_at(span, message, None));
+        }
+    }
+    Ok(())
 }
 
 /// Everything that determines a run's result, as JSON.

@@ -7,7 +7,7 @@ use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::{Posture, Task};
+use super::{PoseTable, Posture, PostureParts, Task};
 use crate::input::{Document, Finite, InputError, PerJoint, finite_array, fraction, nearest};
 use crate::robot::Robot;
 use crate::trajectory::Limits;
@@ -53,6 +53,21 @@ impl TaskTable {
         Robot::embedded(name).is_none().then(|| document.resolve(name))
     }
 
+    /// The same task with another start or goal.
+    #[must_use]
+    pub fn with_pose(&self, pose: &PoseTable) -> Self {
+        Self {
+            start: self.start.with(&pose.start),
+            goal: self.goal.with(&pose.goal),
+            ..self.clone()
+        }
+    }
+
+    /// The robot, read from its file unless it comes with the program.
+    pub fn robot(&self, document: &Document) -> Result<Robot, InputError> {
+        find_robot(&self.robot, document)
+    }
+
     /// The same task with its robot in another place.
     #[must_use]
     pub fn with_robot(self, robot: &str) -> Self {
@@ -61,7 +76,7 @@ impl TaskTable {
 
     /// The task. A robot that does not come with the program is a file, sought beside `document`.
     pub fn build(&self, document: &Document) -> Result<Task, InputError> {
-        let robot = find_robot(&self.robot, document)?;
+        let robot = self.robot(document)?;
         let reader = Reader { document, robot: &robot };
         let [rate, acceleration, jerk] = [
             reader.limit(&self.limits.rate_deg_s)?,
@@ -76,6 +91,19 @@ impl TaskTable {
             base_weight: self.weights.base,
             robot: Arc::new(robot),
         })
+    }
+}
+
+impl PostureTable {
+    /// The same posture but for some parts.
+    fn with(&self, parts: &PostureParts) -> Self {
+        let Self { joints_deg, base_zyx_deg } = self;
+        Self {
+            joints_deg: parts.joints_deg.as_ref().unwrap_or(joints_deg).clone(),
+            base_zyx_deg: parts
+                .base_zyx_deg
+                .map_or(*base_zyx_deg, |base| base.map(|angle| angle.0)),
+        }
     }
 }
 

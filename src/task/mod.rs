@@ -1,6 +1,7 @@
 //! What is to be done: from where to where, within which limits, weighed how.
 
 mod file;
+mod pose;
 
 use std::sync::Arc;
 
@@ -10,6 +11,7 @@ use serde::Serialize;
 use crate::robot::Robot;
 use crate::trajectory::Limits;
 pub use file::TaskTable;
+pub use pose::{PoseTable, PostureParts};
 
 /// A rest-to-rest motion of the arm that is also to turn the base.
 #[derive(Debug, Clone, Serialize)]

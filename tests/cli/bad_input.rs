@@ -173,6 +173,55 @@ fn experiments() {
 
 #[cfg(feature = "harness")]
 #[test]
+fn sweeps() {
+    let swept = |sweep: &str| format!("name = 'x'\n[[optimiser]]\npso = {{}}\nsweep = {sweep}\n");
+    let instances =
+        |sweep: &str| format!("name = 'x'\n[sweep]\n{sweep}\n[[optimiser]]\nrandom = {{}}\n");
+    let field = |tables: &str| format!("name = 'x'\n{tables}\n");
+    for (name, text) in [
+        ("poses_of_two_kinds", instances("pose = [{}]\nrandom_poses = {}")),
+        ("pose_unknown_key", instances("pose = [{ strat = { base_zyx_deg = [0, 0, 0] } }]")),
+        (
+            "pose_out_of_range",
+            instances("pose = [{}, { goal = { joints_deg = [40, 60, 90, -10, -30, 160] } }]"),
+        ),
+        ("pose_too_few_joints", instances("pose = [{ start.joints_deg = [40, 60, 90] }]")),
+        ("poses_without_turn", instances("random_poses = { turn_deg = 0 }")),
+        ("poses_none", instances("random_poses = { count = 0 }")),
+        ("no_budget", instances("budget = [1000, 0]")),
+        ("setting_unknown", swept("{ poplation = [50, 100] }")),
+        ("setting_out_of_range", swept("{ population = [50, 0] }")),
+        ("setting_of_wrong_type", swept("{ formulation = ['raw', 3] }")),
+        ("setting_no_list", swept("{ population = 50 }")),
+        ("setting_empty", swept("{ population = [] }")),
+        ("settings_no_table", swept("[50, 100]")),
+        (
+            "setting_beside",
+            field("[[optimiser]]\npso = { social = 1 }\nsweep = { social = [1, 2] }"),
+        ),
+        ("unknown_beside", field("[[optimiser]]\npso = {}\nseed = 5")),
+        ("two_in_one", field("[[optimiser]]\npso = {}\nrandom = {}")),
+        ("no_optimiser", field("[[optimiser]]\nseeds = 5")),
+        ("no_own_seeds", field("[[optimiser]]\npso = {}\nseeds = 0")),
+        (
+            "labels_alike",
+            field(
+                "[[optimiser]]\npso = { formulation = 'raw' }\nlabel = 'a'\n\
+                 [[optimiser]]\npso = { formulation = 'scaled' }\nlabel = 'a'",
+            ),
+        ),
+        (
+            "budgets_of_two_kinds",
+            field("sweep = { budget = [10, 20] }\n[[optimiser]]\npso = {}\nbudget.evaluations = 5"),
+        ),
+    ] {
+        let args = ["run", "experiment.toml"];
+        rejects(&format!("sweep_{name}"), &args, "experiment.toml", text);
+    }
+}
+
+#[cfg(feature = "harness")]
+#[test]
 fn experiments_on_functions() {
     const FIELD: &str = "\n[[optimiser]]\nrandom = {}\n";
     let on = |table: &str| format!("name = 'x'\n[functions]\n{table}{FIELD}");

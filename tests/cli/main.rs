@@ -10,4 +10,6 @@ mod folder;
 mod shards;
 #[cfg(feature = "harness")]
 mod survival;
+#[cfg(feature = "harness")]
+mod sweeps;
 mod verbs;

@@ -8,6 +8,7 @@ use crate::oracle::{Oracle, Stop};
 use crate::problem::{Bounds, Linearisation, Multipliers, Piece};
 
 /// A point with all that is known there.
+#[derive(Clone)]
 pub(super) struct Iterate {
     pub(super) x: DVector<f64>,
     /// With the weight of the norm that the search works with.

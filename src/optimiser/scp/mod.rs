@@ -9,7 +9,9 @@
 //!
 //! The norm is an exact penalty: as soon as `a` exceeds the multiplier of `r = 0` the minimum no longer
 //! depends on it. The task's weight is many times that, which makes a search hug `r = 0`, slow and
-//! soon in a poor valley; so the search starts with a smaller one and raises it only as it must.
+//! soon in a poor valley; so the search starts with a smaller one and raises it only as it must. Where
+//! `r = 0` is out of reach, though, no weight is exact, and a small one leads every start to the same
+//! short motion; so a start that ends there is followed once more, with the task's weight throughout.
 //!
 //! A start has been followed to its end when, with the task's own weight, a step promises next to
 //! nothing and the Lagrangian is level, the first-order condition of a minimum.
@@ -100,15 +102,20 @@ impl Scp {
         oracle: &mut Oracle<'_>,
         rng: &mut Rng,
     ) -> Result<(), Stop> {
-        let usual = if first.is_some() { 1 } else { 100 };
-        let starts = self.starts.map_or(usual, NonZeroUsize::get);
+        let mut random = self.random_starts();
         if let Some(first) = first {
             self.follow(oracle, first)?;
+            random = self.starts.map_or(0, |starts| starts.get() - 1);
         }
-        for _ in usize::from(first.is_some())..starts {
+        for _ in 0..random {
             self.follow(oracle, &Self::start(oracle.bounds(), rng))?;
         }
         Ok(())
+    }
+
+    /// Starts of a run that follows no other optimiser.
+    pub fn random_starts(&self) -> usize {
+        self.starts.map_or(100, NonZeroUsize::get)
     }
 
     /// Draws a start uniformly from the box shrunk about its middle, by the square of a number drawn
@@ -158,6 +165,8 @@ struct Search<'a, 'b> {
     settings: &'a Scp,
     oracle: &'a mut Oracle<'b>,
     here: Iterate,
+    /// Where to begin once more with the task's own weight.
+    start: Option<Iterate>,
     curvature: DMatrix<f64>,
     radius: f64,
     /// The task's own weight of the norm.
@@ -173,10 +182,12 @@ impl<'a, 'b> Search<'a, 'b> {
         let first_weight = settings.first_weight * here.cost();
         // Where time costs nothing there is nothing to compare the error with.
         let weight = if first_weight > 0.0 { first_weight.min(full_weight) } else { full_weight };
+        let here = here.weighed(weight);
         Ok(Self {
             settings,
             oracle,
-            here: here.weighed(weight),
+            start: (weight < full_weight).then(|| here.clone()),
+            here,
             curvature: DMatrix::zeros(start.len(), start.len()),
             radius: settings.radius,
             full_weight,
@@ -192,7 +203,7 @@ impl<'a, 'b> Search<'a, 'b> {
     /// Solves one subproblem and makes its step, or not.
     fn step(&mut self) -> Result<Option<Ending>, Stop> {
         if self.radius < SMALLEST {
-            return Ok(self.finish(Ending::Stalled, GROWTH));
+            return Ok(self.finish(Ending::Stalled, false));
         }
         let region = Region::around(self.oracle.bounds(), &self.here.x, self.radius);
         let model = Model { parts: &self.here.parts, curvature: &self.curvature, region: &region };
@@ -227,8 +238,7 @@ impl<'a, 'b> Search<'a, 'b> {
         if slope <= self.settings.stationarity * self.scale() {
             // A shorter multiplier stays one whatever the weight.
             let exact = step.nu.norm() < (1.0 - ACTIVE) * self.here.parts.norm_weight;
-            let growth = if exact { f64::INFINITY } else { GROWTH };
-            return Ok(self.finish(Ending::Optimal, growth));
+            return Ok(self.finish(Ending::Optimal, exact));
         }
         // Where the cost no longer tells good steps from bad ones, the slope does.
         let weight = self.here.parts.norm_weight;
@@ -239,16 +249,23 @@ impl<'a, 'b> Search<'a, 'b> {
         } else if self.curvature.iter().any(|&b| b != 0.0) {
             self.curvature.fill(0.0);
         } else {
-            return Ok(self.finish(Ending::Stalled, GROWTH));
+            return Ok(self.finish(Ending::Stalled, false));
         }
         Ok(None)
     }
 
-    /// Ends, unless with a smaller weight than the task's own: then goes on with a larger one.
-    fn finish(&mut self, ending: Ending, growth: f64) -> Option<Ending> {
+    /// Ends, unless with a smaller weight than the task's own: then goes on with a larger one. Where
+    /// even the task's own leaves an error, smaller weights led all starts towards the same few
+    /// motions, which need not be good ones; then begins once more with the task's own.
+    fn finish(&mut self, ending: Ending, exact: bool) -> Option<Ending> {
         let weight = self.here.parts.norm_weight;
+        let growth = if exact { f64::INFINITY } else { GROWTH };
         if weight >= self.full_weight {
-            return Some(ending);
+            let Some(start) = self.start.take().filter(|_| !exact) else {
+                return Some(ending);
+            };
+            self.here = start.weighed(self.full_weight);
+            self.curvature.fill(0.0);
         }
         self.here.parts.norm_weight = self.full_weight.min(growth * weight);
         self.radius = self.radius.max(self.settings.radius);

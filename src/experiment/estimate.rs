@@ -1,0 +1,139 @@
+//! How long an experiment takes, from a short trial of every optimiser.
+
+use std::collections::{BTreeMap, HashMap};
+use std::num::NonZeroUsize;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+
+use super::caught::caught;
+use super::{Plan, RunError, RunSpec};
+use crate::optimiser::{Scp, Settings};
+use crate::oracle::{Oracle, Rng, Watch};
+
+/// What all trials may take together, on each thread.
+const ALLOWANCE: Duration = Duration::from_secs(4);
+
+/// What one trial may take.
+const LONGEST: Duration = Duration::from_secs(1);
+
+/// How much longer a trial with derivatives may be: its runs mostly end by themselves, long before
+/// their budget, and how soon is to be seen.
+const WITH_DERIVATIVES: u32 = 4;
+
+/// Instances of each kind that are tried.
+const TRIED: usize = 3;
+
+/// Wall time that the runs of a plan take on so many threads, from trials of a few seconds in all.
+///
+/// Every optimiser is tried on a few instances with each number of variables. A run that ends within
+/// its trial takes what it took; of another what it spent of its budget is scaled up to all of it,
+/// which is too much for one that would have ended earlier.
+pub fn estimate(plan: &Plan, jobs: usize) -> Result<Duration, RunError> {
+    let trials = choose(plan);
+    let weights = trials.iter().map(|run| weight(plan, run)).sum::<u32>().max(1);
+    let share = ALLOWANCE * u32::try_from(jobs).unwrap_or(u32::MAX).min(1024) / weights;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build()?;
+    let seconds: Vec<f64> = pool.install(|| {
+        let timed = |run: &&RunSpec| attempt(plan, run, (share * weight(plan, run)).min(LONGEST));
+        trials.par_iter().map(timed).collect()
+    });
+    // Seconds and number of the trials of each optimiser on each kind of instance.
+    let mut found: HashMap<_, (f64, f64)> = HashMap::new();
+    for (run, seconds) in trials.iter().zip(seconds) {
+        let (sum, number) = found.entry(kind(plan, run)).or_default();
+        *sum += seconds;
+        *number += 1.0;
+    }
+    let each = plan.runs.iter().filter_map(|run| found.get(&kind(plan, run)));
+    let (mut all, mut longest) = (0.0, 0.0_f64);
+    for (sum, number) in each {
+        all += sum / number;
+        longest = longest.max(sum / number);
+    }
+    Ok(Duration::try_from_secs_f64((all / jobs as f64).max(longest)).unwrap_or(Duration::MAX))
+}
+
+/// What runs have in common that take about as long: optimiser, kind of problem, number of variables
+/// and budget.
+type Kind<'a> = (usize, &'a str, usize, u64);
+
+fn kind<'a>(plan: &'a Plan, run: &RunSpec) -> Kind<'a> {
+    let instance = &plan.instances[run.instance];
+    let formulation = plan.optimisers[run.optimiser].settings.formulation();
+    let variables = instance.problem(formulation).bounds().len();
+    (run.optimiser, instance.subject.name(), variables, run.budget)
+}
+
+/// A few runs of every kind, with the first seed, spread evenly over the kind's instances.
+fn choose(plan: &Plan) -> Vec<&RunSpec> {
+    let mut kinds: BTreeMap<Kind<'_>, Vec<&RunSpec>> = BTreeMap::new();
+    for run in plan.runs.iter().filter(|run| run.seed == 1) {
+        kinds.entry(kind(plan, run)).or_default().push(run);
+    }
+    kinds.values().flat_map(|runs| spread(runs)).collect()
+}
+
+/// A few of a list, from its first to its last.
+fn spread<'a>(runs: &[&'a RunSpec]) -> Vec<&'a RunSpec> {
+    let tried = runs.len().min(TRIED);
+    (0..tried).map(|i| runs[i * (runs.len() - 1) / (tried - 1).max(1)]).collect()
+}
+
+fn weight(plan: &Plan, run: &RunSpec) -> u32 {
+    let optimiser = plan.optimisers[run.optimiser].settings.optimiser();
+    if optimiser.needs_derivatives() { WITH_DERIVATIVES } else { 1 }
+}
+
+/// Seconds that a run takes, as far as so much time tells.
+fn attempt(plan: &Plan, run: &RunSpec, time: Duration) -> f64 {
+    let watch = Watch::default();
+    let (over, end) = channel::<()>();
+    thread::scope(|scope| {
+        let watch = &watch;
+        scope.spawn(move || {
+            if end.recv_timeout(time) == Err(RecvTimeoutError::Timeout) {
+                watch.interrupt();
+            }
+        });
+        let seconds = projected(plan, run, watch);
+        drop(over);
+        seconds
+    })
+}
+
+/// Seconds that a run takes, judged when it ends or is interrupted. A run of many starts is made one
+/// start at a time, to see how long each takes.
+fn projected(plan: &Plan, run: &RunSpec, watch: &Watch) -> f64 {
+    let settings = &plan.optimisers[run.optimiser].settings;
+    let (part, parts) = match settings {
+        Settings::Scp(scp) => {
+            let one = Scp { starts: Some(NonZeroUsize::MIN), ..scp.clone() };
+            (Settings::Scp(one), scp.random_starts())
+        }
+        whole => (whole.clone(), 1),
+    };
+    let problem = plan.instances[run.instance].problem(settings.formulation());
+    let started = Instant::now();
+    let (mut done, mut evaluations, mut seconds) = (0, 0, 0.0);
+    for seed in (1..).take(parts) {
+        let mut oracle = Oracle::new(&*problem, run.budget - evaluations, watch);
+        // A run that panics takes as long as until then.
+        let _ = caught(|| part.optimiser().minimise(&mut oracle, &mut Rng::new(seed)));
+        evaluations += oracle.evaluations();
+        if watch.is_interrupted() {
+            let spent = run.budget as f64 / evaluations.max(1) as f64;
+            let by_budget = started.elapsed().as_secs_f64() * spent;
+            let by_parts = seconds * parts as f64 / f64::from(done);
+            return if done > 0 { by_parts.min(by_budget) } else { by_budget };
+        }
+        done += 1;
+        seconds = started.elapsed().as_secs_f64();
+        if evaluations >= run.budget {
+            break;
+        }
+    }
+    seconds
+}

@@ -1,0 +1,269 @@
+//! The `[[optimiser]]` tables: sweeps over settings spelt out, labels made.
+//!
+//! What a table may have beside its optimiser is told from it while the file is still TOML, so that
+//! the place of every value survives for its error.
+
+use std::collections::HashMap;
+use std::num::NonZeroU64;
+use std::ops::Range;
+
+use serde::ser::Serializer;
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+use toml::de::{DeArray, DeString, DeTable, DeValue};
+
+use super::{BudgetTable, Entrant};
+use crate::input::{Document, InputError, nearest, optional_count};
+use crate::optimiser::Settings;
+
+/// One optimiser of the field: an `[[optimiser]]` table, or one combination of its `sweep`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct EntrantTable {
+    /// Optimiser and settings.
+    pub settings: Spanned<Settings>,
+    /// What to call it instead of its name and formulation.
+    #[serde(default)]
+    pub label: Option<Spanned<String>>,
+    /// Number of seeds, instead of the experiment's.
+    #[serde(default, deserialize_with = "optional_count::<1, 1_000_000, _, _>")]
+    pub seeds: Option<NonZeroU64>,
+    /// What each of its runs may spend, instead of the experiment's budget.
+    #[serde(default)]
+    pub budget: Option<Spanned<BudgetTable>>,
+}
+
+/// The keys that stand beside an optimiser.
+const BESIDE: [&str; 3] = ["label", "seeds", "budget"];
+
+/// The key of a sweep, which is gone when the field is spelt out.
+const SWEEP: &str = "sweep";
+
+impl Serialize for EntrantTable {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        /// The table as one writes it.
+        #[derive(Serialize)]
+        struct Written<'a> {
+            #[serde(skip_serializing_if = "Option::is_none")]
+            label: &'a Option<Spanned<String>>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            seeds: Option<NonZeroU64>,
+            #[serde(flatten)]
+            settings: &'a Settings,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            budget: &'a Option<Spanned<BudgetTable>>,
+        }
+        let Self { settings, label, seeds, budget } = self;
+        let settings = settings.get_ref();
+        Written { label, seeds: *seeds, settings, budget }.serialize(serializer)
+    }
+}
+
+impl From<Settings> for EntrantTable {
+    fn from(settings: Settings) -> Self {
+        let settings = Spanned::new(0..0, settings);
+        Self { settings, label: None, seeds: None, budget: None }
+    }
+}
+
+/// Labels the field: the label given, or optimiser and, on the task, formulation; with the settings
+/// that differ from the default and a budget of its own where the field has these more than once.
+pub(super) fn entrants(field: &[EntrantTable], on_task: bool) -> Vec<Entrant> {
+    let plain = |table: &EntrantTable| {
+        let settings = table.settings.get_ref();
+        match &table.label {
+            Some(label) => label.get_ref().clone(),
+            None if on_task => format!("{}/{}", settings.title(), settings.formulation().name()),
+            None => settings.title(),
+        }
+    };
+    let mut count = HashMap::new();
+    for table in field {
+        *count.entry(plain(table)).or_insert(0) += 1;
+    }
+    let entrant = |table: &EntrantTable| {
+        let (mut label, settings) = (plain(table), table.settings.get_ref().clone());
+        let budget = table.budget.as_ref().map(|budget| budget.get_ref().evaluations);
+        if count[&label] > 1 {
+            let own = budget.map(|evaluations| format!("budget={evaluations}"));
+            for part in settings.changed().into_iter().chain(own) {
+                label += " ";
+                label += &part;
+            }
+        }
+        Entrant { label, settings, seeds: table.seeds, budget }
+    };
+    field.iter().map(entrant).collect()
+}
+
+/// Makes of every `[[optimiser]]` table one for each combination of its `sweep`, with the optimiser in
+/// a table of its own, as [`EntrantTable`] reads it.
+pub(super) fn spell_out(file: &mut DeTable<'_>, document: &Document) -> Result<(), InputError> {
+    let field = file.get_mut("optimiser").map(Spanned::get_mut);
+    let Some(DeValue::Array(field)) = field else {
+        return Ok(());
+    };
+    let mut spelt_out = DeArray::new();
+    for entry in field.iter() {
+        match entry.get_ref() {
+            DeValue::Table(table) => {
+                let (beside, choices) = combinations(table.clone(), entry.span(), document)?;
+                for choice in choices {
+                    spelt_out.push(entrant_table(beside.clone(), choice, entry.span()));
+                }
+            }
+            _ => spelt_out.push(entry.clone()),
+        }
+    }
+    *field = spelt_out;
+    Ok(())
+}
+
+fn entrant_table<'i>(
+    mut beside: DeTable<'i>,
+    choice: DeTable<'i>,
+    span: Range<usize>,
+) -> Spanned<DeValue<'i>> {
+    let choice = Spanned::new(span.clone(), DeValue::Table(choice));
+    beside.insert(Spanned::new(span.clone(), "settings".into()), choice);
+    Spanned::new(span, DeValue::Table(beside))
+}
+
+/// What stands beside the optimiser, and the optimiser with every combination of the sweep.
+fn combinations<'i>(
+    mut table: DeTable<'i>,
+    span: Range<usize>,
+    document: &Document,
+) -> Result<(DeTable<'i>, Vec<DeTable<'i>>), InputError> {
+    let sweep = table.remove(SWEEP);
+    let (mut beside, mut choice) = (DeTable::new(), DeTable::new());
+    for (key, value) in table {
+        let is_beside = BESIDE.contains(&key.get_ref().as_ref());
+        (if is_beside { &mut beside } else { &mut choice }).insert(key, value);
+    }
+    if choice.is_empty() {
+        let message = "found no optimiser, expected one with its settings, such as `pso = {}`";
+        return Err(document.error_at(span, message, None));
+    }
+    check_choice(&choice, document)?;
+    let mut choices = vec![choice];
+    if let (Some(sweep), Some((name, _))) = (&sweep, choices[0].iter().next()) {
+        let mut axes = Vec::new();
+        collect_axes(sweep, &mut vec![name.clone()], &mut axes, document)?;
+        for axis in &axes {
+            choices = axis.cross(&choices, document)?;
+        }
+    }
+    Ok((beside, choices))
+}
+
+/// Whether a table has but one optimiser.
+fn check_choice(choice: &DeTable<'_>, document: &Document) -> Result<(), InputError> {
+    let known: Vec<&str> = Settings::all().iter().map(Settings::name).collect();
+    let is_known = |key: &Spanned<DeString<'_>>| known.contains(&key.get_ref().as_ref());
+    let unknown = choice.keys().find(|key| !is_known(key));
+    let Some(key) = unknown.or_else(|| choice.keys().nth(1)).filter(|_| choice.len() > 1) else {
+        return Ok(());
+    };
+    let name = key.get_ref();
+    let (message, help) = if is_known(key) {
+        (format!("found a second optimiser, `{name}`, in the same `[[optimiser]]`"), None)
+    } else {
+        let expected = BESIDE.iter().chain([&SWEEP]);
+        let message = format!(
+            "unknown key `{name}` beside an optimiser, expected one of {}",
+            expected.clone().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ")
+        );
+        let near = nearest(name, expected.copied());
+        (message, near.map(|near| format!("did you mean `{near}`?")))
+    };
+    Err(document.error_at(key.span(), message, help))
+}
+
+/// A key as TOML has it.
+type Key<'i> = Spanned<DeString<'i>>;
+
+/// A setting and the values it takes.
+struct Axis<'i> {
+    /// From the optimiser's name inward.
+    path: Vec<Key<'i>>,
+    values: DeArray<'i>,
+}
+
+/// Collects the lists of a sweep, at any depth.
+fn collect_axes<'i>(
+    sweep: &Spanned<DeValue<'i>>,
+    path: &mut Vec<Key<'i>>,
+    axes: &mut Vec<Axis<'i>>,
+    document: &Document,
+) -> Result<(), InputError> {
+    let message = match sweep.get_ref() {
+        DeValue::Table(table) => {
+            for (key, value) in table {
+                path.push(key.clone());
+                collect_axes(value, path, axes, document)?;
+                path.pop();
+            }
+            return Ok(());
+        }
+        // What stands right below the optimiser's name are settings.
+        _ if path.len() == 1 => "found no table, expected one of lists by setting",
+        DeValue::Array(values) if values.is_empty() => {
+            "found an empty list, expected at least one value"
+        }
+        DeValue::Array(values) => {
+            axes.push(Axis { path: path.clone(), values: values.clone() });
+            return Ok(());
+        }
+        _ => "found a single value, expected a list of the values to try",
+    };
+    Err(document.error_at(sweep.span(), message, None))
+}
+
+impl<'i> Axis<'i> {
+    /// Every choice with every value.
+    fn cross(
+        &self,
+        choices: &[DeTable<'i>],
+        document: &Document,
+    ) -> Result<Vec<DeTable<'i>>, InputError> {
+        let mut crossed = Vec::new();
+        for choice in choices {
+            for value in &self.values {
+                let mut choice = choice.clone();
+                if let Some(key) = set(&mut choice, &self.path, value) {
+                    let message = format!("`{}` has a value beside its sweep", key.get_ref());
+                    return Err(document.error_at(key.span(), message, None));
+                }
+                crossed.push(choice);
+            }
+        }
+        Ok(crossed)
+    }
+}
+
+/// Puts a value where a path leads; gives the key where another value stands in the way.
+fn set<'a, 'i>(
+    table: &mut DeTable<'i>,
+    path: &'a [Key<'i>],
+    value: &Spanned<DeValue<'i>>,
+) -> Option<&'a Key<'i>> {
+    let (key, rest) = path.split_first()?;
+    let name: &str = key.get_ref().as_ref();
+    if rest.is_empty() {
+        let free = !table.contains_key(name);
+        return if free {
+            table.insert(key.clone(), value.clone());
+            None
+        } else {
+            Some(key)
+        };
+    }
+    if !table.contains_key(name) {
+        table.insert(key.clone(), Spanned::new(key.span(), DeValue::Table(DeTable::new())));
+    }
+    match table.get_mut(name).map(Spanned::get_mut) {
+        Some(DeValue::Table(inner)) => set(inner, rest, value),
+        _ => Some(key),
+    }
+}
