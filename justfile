@@ -29,6 +29,10 @@ peers:
     benches/peers/optimisers/run.sh
     benches/peers/pinocchio/run.sh
 
+# what `export` writes, read by the tools whose formats it writes; needs Python 3.11
+exchange:
+    tests/exchange/run.sh
+
 # the default experiment
 run:
     cargo run --release -- run
