@@ -33,6 +33,14 @@ peers:
 statistics:
     tests/statistics/run.sh
 
+# what `export` writes, read by the tools whose formats it writes; needs Python 3.11
+exchange:
+    tests/exchange/run.sh
+
+# an array of tasks on a Slurm of its own, killed and requeued; skipped where Slurm is not installed
+cluster:
+    tests/cluster/run.sh
+
 # the default experiment
 run:
     cargo run --release -- run

@@ -34,7 +34,7 @@
 //! | floor | modules |
 //! |---|---|
 //! | 12 | [`cli`]: one file a verb |
-//! | 11 | `plot`: charts; [`export`]: motions in formats that other tools read |
+//! | 11 | `plot`: charts; [`export`]: motions, and an experiment's runs, in formats that other tools read |
 //! | 10 | `analysis`: from stored runs to tables |
 //! | 9 | `experiment`: config, instances, plan, runner, store |
 //! | 8 | [`optimiser`]: one file an optimiser |

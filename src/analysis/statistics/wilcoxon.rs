@@ -36,7 +36,7 @@ pub fn wilcoxon(first: &[f64], second: &[f64]) -> Wilcoxon {
     let ranks = average_ranks(&sizes);
     let sum = |negative: bool| {
         let signed = ranks.iter().zip(&differences);
-        signed.filter(|(_, d)| (**d < 0.0) == negative).map(|(rank, _)| rank).sum::<f64>()
+        signed.filter(|(_, d)| (**d < 0.0) == negative).fold(0.0, |sum, (rank, _)| sum + rank)
     };
     let (first_lower, second_lower) = (sum(true), sum(false));
     let exact = differences.len() == all && all <= EXACT && all_differ(&sizes);
