@@ -2,10 +2,14 @@
 //! when the base is worth its time.
 #![cfg(feature = "harness")]
 
+use std::sync::Arc;
+
 use driftless::analysis::{self, Run, best_run};
 use driftless::experiment::{self, ExperimentFile, Plan, Progress, Record, RunSpec, Store};
 use driftless::input::Document;
-use driftless::oracle::Watch;
+use driftless::optimiser::{Ending, Scp};
+use driftless::oracle::{Oracle, Watch};
+use driftless::problem::{BestKnown, Formulated, Formulation, TaskFile};
 
 struct Quiet;
 
@@ -89,6 +93,48 @@ fn the_base_comes_home_as_soon_as_it_is_worth_its_time() {
             assert!(run.residual_deg < 1e-4, "K_b = {weight}: {} °", run.residual_deg);
         }
     }
+}
+
+/// The best known motion, followed to its local optimum on another task; its residual and duration.
+fn followed(task: &str) -> (f64, f64) {
+    let problem = |text: &str| {
+        let document = Document::embedded("task.toml", text);
+        TaskFile::read(&document).unwrap().build(&document).unwrap()
+    };
+    let start = BestKnown::of(&problem("").0).unwrap().coefficients.concat();
+    let (task, boxes) = problem(task);
+    let problem = Formulated::new(Formulation::TimeFree, Arc::new(task), &boxes);
+    let watch = Watch::default();
+    let mut oracle = Oracle::new(&problem, 10_000, &watch);
+    // With the task's own weight from the start, and in small steps.
+    let scp = Scp { first_weight: 1e9, radius: 1e-3, ..Scp::default() };
+    assert_eq!(scp.follow(&mut oracle, &start), Ok(Ending::Optimal));
+    let (_, motion) = problem.certify(&oracle.best().unwrap().x);
+    (motion.residual().to_degrees(), motion.duration)
+}
+
+/// The theorem of exact penalties: a motion that ends at the goal is a local optimum as long as the
+/// error weighs more than the constraint's multiplier, which is the gradient of the best duration by
+/// the goal, found here from differences. An error of `θ` adds `K_b θ / (2 sin ½°)` to `J`.
+#[test]
+fn homing_is_locally_best_down_to_its_multiplier() {
+    const TURN: f64 = 0.02;
+    let slope = |axis: usize| {
+        let duration = |turn: f64| {
+            let mut goal = [0.0; 3];
+            goal[axis] = turn;
+            let (residual, duration) = followed(&format!("[task.goal]\nbase_zyx_deg = {goal:?}\n"));
+            assert!(residual < 1e-4, "{residual}");
+            duration
+        };
+        (duration(TURN) - duration(-TURN)) / (2.0 * TURN.to_radians())
+    };
+    let multiplier = (0..3).map(|axis| slope(axis).powi(2)).sum::<f64>().sqrt();
+    let ratio = multiplier * 2.0 * 0.5_f64.to_radians().sin();
+    let residual =
+        |ratio: f64| followed(&format!("[task.weights]\nbase = {}\n", ratio / (1.0 + ratio))).0;
+    assert!(residual(1.01 * ratio) < 1e-4, "{ratio}");
+    assert!(residual(0.99 * ratio) > 1.0, "{ratio}");
 }
 
 /// A hundred random poses are within the robot's ranges, turn the base no further than asked for and do
