@@ -31,7 +31,7 @@ fn tables(folder: &Path) -> impl Iterator<Item = DataFrame> {
 }
 
 /// The rows of all tables in a folder, each a table of its own.
-pub(crate) fn rows(folder: &Path) -> Vec<DataFrame> {
+pub(crate) fn single_rows(folder: &Path) -> Vec<DataFrame> {
     tables(folder).flat_map(|t| (0..t.height() as i64).map(move |i| t.slice(i, 1))).collect()
 }
 
@@ -52,7 +52,7 @@ fn traces_are_the_same_bytes_whatever_the_jobs() {
 fn budgets_are_spent_to_the_last_evaluation_and_not_overshot() {
     let folder = Folder::new().with("small.toml", SMALL);
     run(&folder, &["small.toml", "--out", "out"]);
-    for runs in rows(&folder.path().join("out/runs")) {
+    for runs in single_rows(&folder.path().join("out/runs")) {
         assert_eq!(runs.column("evaluations").unwrap().u64().unwrap().get(0), Some(700));
     }
     for trace in tables(&folder.path().join("out/traces")) {
@@ -114,7 +114,7 @@ fn results_say_how_to_get_them_again() {
     let text = SMALL.replace("[sweep]", "[task]\nrobot = 'arm.toml'\n[sweep]");
     let folder = Folder::new().with("small.toml", text).with("arm.toml", robot);
     run(&folder, &["small.toml", "--out", "out"]);
-    let recipe = rows(&folder.path().join("out/runs"))[0].column("recipe").unwrap().clone();
+    let recipe = single_rows(&folder.path().join("out/runs"))[0].column("recipe").unwrap().clone();
     let recipe: serde_json::Value =
         serde_json::from_str(recipe.str().unwrap().get(0).unwrap()).unwrap();
     assert_eq!(recipe["task"]["robot"]["base"]["mass"], 700.0);
@@ -167,7 +167,7 @@ fn test_functions_are_problems_like_any_other() {
     for word in ["t_f", "residual", "motion", "J"] {
         assert!(!summary.contains(word), "{word}: {summary}");
     }
-    for runs in rows(&folder.path().join("out/runs")) {
+    for runs in single_rows(&folder.path().join("out/runs")) {
         let name = runs.column("problem").unwrap().str().unwrap().get(0).unwrap();
         assert!(["sphere", "rastrigin"].contains(&name));
         assert!(runs.column("t_f").unwrap().get(0).unwrap().is_null());
@@ -189,7 +189,7 @@ fn targets_follow_the_best_known() {
         assert!(summary.contains(target), "{summary}");
     }
     assert!(summary.contains(" above the best known, 0.781849)"), "{summary}");
-    let runs = &rows(&folder.path().join("one/runs"))[0];
+    let runs = &single_rows(&folder.path().join("one/runs"))[0];
     let targets = runs.column("targets").unwrap().list().unwrap().get_as_series(0).unwrap();
     assert_eq!(targets.f64().unwrap().get(0), Some(0.860_033));
     let kept = fs::read_to_string(folder.path().join("one/experiment.toml")).unwrap();
@@ -231,7 +231,7 @@ fn runs_that_find_nothing_are_recorded() {
     let output = folder.run(&["run", "small.toml", "--out", "out"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("warning: 12 of 12 runs failed or found nothing"));
-    for runs in rows(&folder.path().join("out/runs")) {
+    for runs in single_rows(&folder.path().join("out/runs")) {
         assert_eq!(runs.column("evaluations").unwrap().u64().unwrap().get(0), Some(700));
         assert!(runs.column("j").unwrap().get(0).unwrap().is_null());
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::experiments::{run, rows};
+use crate::experiments::{run, single_rows};
 use crate::folder::{Folder, stderr, stdout};
 
 const SWEEPS: &str = "name = 'sweeps'\nseeds = 2\nbudget = { evaluations = 400 }\n[sweep]\n\
@@ -16,7 +16,7 @@ const SWEEPS: &str = "name = 'sweeps'\nseeds = 2\nbudget = { evaluations = 400 }
 /// The label of every run in a folder's table, with its number of runs.
 fn labels(folder: &Path, column: &str) -> BTreeMap<String, usize> {
     let mut labels = BTreeMap::new();
-    for runs in rows(folder) {
+    for runs in single_rows(folder) {
         let label = runs.column(column).unwrap().str().unwrap().get(0).unwrap();
         *labels.entry(label.to_owned()).or_default() += 1;
     }
@@ -63,7 +63,7 @@ fn sweeps_cover_poses_and_settings() {
     assert_eq!(stdout(&output), summary);
     // One budget and one number of seeds for all, from the command line.
     run(&folder, &["sweeps.toml", "--out", "short", "--budget", "50", "--seeds", "1"]);
-    let short = rows(&folder.path().join("short/runs"));
+    let short = single_rows(&folder.path().join("short/runs"));
     let budgets = short.iter().map(|runs| runs.column("budget").unwrap().u64().unwrap().get(0));
     assert_eq!(budgets.collect::<Vec<_>>(), [Some(50); 28]);
 }
@@ -75,7 +75,7 @@ fn sweeps_cover_budgets_and_extreme_weights() {
         random_poses = { count = 2, seed = 3 }\n[[optimiser]]\nscp = {}\n[[optimiser]]\nde = {}\n";
     let folder = Folder::new().with("x.toml", text);
     run(&folder, &["x.toml", "--out", "out"]);
-    let runs = rows(&folder.path().join("out/runs"));
+    let runs = single_rows(&folder.path().join("out/runs"));
     assert_eq!(runs.len(), 16);
     for row in runs {
         let budget = row.column("budget").unwrap().u64().unwrap().get(0).unwrap();
