@@ -25,8 +25,9 @@ TARGETS = [float(np.power(10, i / 5)) for i in range(20, -41, -1)]
 
 
 def compare(folder, table, optima, tally):
-    """Numbers of the index, and cocopp's running times, of each trial and expected."""
-    left = dict(table)
+    """Numbers of the index, and cocopp's running times, of each trial and expected; gives the data set of
+    every group and optimiser."""
+    left, found = dict(table), {}
     with warnings.catch_warnings():
         # Fewer or more than 15 trials of a function are worth a warning to cocopp.
         warnings.simplefilter("ignore")
@@ -35,8 +36,10 @@ def compare(folder, table, optima, tally):
         group, optimiser = identity(data, left)
         where = f"{group} {optimiser}"
         compare_data_set(data, left.pop((group, optimiser)), optima[group], tally, where)
+        found[group, optimiser] = data
     if left:
         raise SystemExit(f"no data set of {sorted(left)}")
+    return found
 
 
 def identity(data, left):

@@ -19,6 +19,7 @@ rm -rf "$results"
 for experiment in "$here"/experiments/*.toml; do
     name=$(basename "$experiment" .toml)
     "$program" run "$experiment" --out "$results/$name/stored" > /dev/null 2>&1
+    "$program" report "$results/$name/stored" > /dev/null 2>&1
     for format in ioh coco; do
         "$program" export "$results/$name/stored" --format $format --out "$results/$name/$format" > /dev/null
     done
