@@ -4,7 +4,7 @@ use polars::prelude::*;
 
 use super::runs::{Run, groups};
 use super::statistics::quantile;
-use super::targets::plain;
+use super::targets::{Targets, plain, targets};
 use crate::experiment::{Instance, Plan};
 
 /// One line an optimiser and group of instances: quartiles of the best cost over the runs, failures
@@ -43,36 +43,34 @@ pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
     if !plan.instances.iter().any(Instance::is_task) {
         columns = columns.drop_many(["residual [°]", "t_f [s]"]);
     }
-    for column in target_columns(plan, &groups) {
+    for column in target_columns(plan, &targets(plan, runs), &groups) {
         columns.with_column(column)?;
     }
     Ok(columns)
 }
 
-/// One column a target; where the instances have different ones, each cell says which it is.
-fn target_columns(plan: &Plan, groups: &[Vec<&Run>]) -> Vec<Column> {
-    let symbol = plan.cost_symbol();
-    let most = plan.instances.iter().map(|instance| instance.targets.len()).max().unwrap_or(0);
-    let column = |k: usize| {
-        let target = |run: &Run| plan.instances[run.instance].targets.get(k).copied();
-        let mut distinct: Vec<f64> =
-            plan.instances.iter().filter_map(|i| i.targets.get(k).copied()).collect();
-        distinct.sort_by(f64::total_cmp);
-        distinct.dedup();
-        let cells = groups.iter().map(|group| {
-            let Some(shown) = target(group[0]) else { return String::new() };
+/// One column a target: how many runs reached their instance's; where groups have different ones, each cell
+/// says which.
+fn target_columns(plan: &Plan, targets: &Targets, groups: &[Vec<&Run>]) -> Vec<Column> {
+    let column = |(k, label): (usize, &String)| {
+        let target = |run: &Run| targets.values[run.instance].get(k).copied();
+        let cell = |group: &Vec<&Run>| {
+            let shown = target(group[0])?;
             let reached = |run: &&&Run| target(run).is_some_and(|target| run.cost <= target);
             let share = format!("{}/{}", group.iter().filter(reached).count(), group.len());
-            if distinct.len() == 1 { share } else { format!("{share} ≤ {}", plain(shown)) }
-        });
-        let cells: Vec<String> = cells.collect();
-        let name = match distinct[..] {
-            [target] => format!("{symbol} ≤ {}", plain(target)),
-            _ => format!("{symbol}, target {}", k + 1),
+            let one = group.iter().all(|run| target(run) == Some(shown));
+            let numbered = label.starts_with("target");
+            Some(if one && numbered { format!("{share} ≤ {}", plain(shown)) } else { share })
+        };
+        let cells: Vec<String> = groups.iter().map(|g| cell(g).unwrap_or_default()).collect();
+        let name = if label.starts_with("target") {
+            format!("{}, {label}", plan.cost_symbol())
+        } else {
+            label.clone()
         };
         Column::new(name.into(), cells)
     };
-    (0..most).map(column).collect()
+    targets.labels.iter().enumerate().map(column).collect()
 }
 
 fn quantile_of(group: &[&Run], value: fn(&Run) -> f64, q: f64) -> f64 {
