@@ -2,24 +2,39 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::results::{Results, ResultsFolder, no_results};
-use crate::analysis;
-use crate::export::{Suite, SuiteFormat, write_suite};
+use crate::analysis::{self, Run};
+use crate::experiment::{Instance, Plan};
+use crate::export::{self, MotionFormat, Suite, SuiteFormat, write_suite};
 
-/// Write an experiment's runs in a format that other benchmarking tools read
+/// Write an experiment's runs as other benchmarking tools read them, or its best motions
 #[derive(Debug, Args)]
 pub(super) struct Export {
     #[command(flatten)]
     results: ResultsFolder,
     /// Format to write
     #[arg(long, value_enum)]
-    format: SuiteFormat,
+    format: Format,
     /// Folder to write; it may exist, but only empty
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Format {
+    /// The runs for IOHprofiler, read by iohinspector
+    Ioh,
+    /// The runs for COCO, read by cocopp
+    Coco,
+    /// The best motion of every instance as comma-separated values
+    Csv,
+    /// The best motion of every instance as Parquet
+    Parquet,
+    /// The best motion of every instance as ROS JointTrajectory
+    Yaml,
 }
 
 impl Export {
@@ -32,8 +47,18 @@ impl Export {
         if runs.len() < plan.runs.len() {
             eprintln!("note: {} of {} runs are stored so far", runs.len(), plan.runs.len());
         }
-        let suite = Suite::new(&plan, &runs)?;
-        write_suite(&self.out, self.format, &suite)?;
+        match self.format {
+            Format::Ioh => self.write_runs(SuiteFormat::Ioh, &plan, &runs),
+            Format::Coco => self.write_runs(SuiteFormat::Coco, &plan, &runs),
+            Format::Csv => self.write_motions(MotionFormat::Csv, &plan, &runs),
+            Format::Parquet => self.write_motions(MotionFormat::Parquet, &plan, &runs),
+            Format::Yaml => self.write_motions(MotionFormat::Yaml, &plan, &runs),
+        }
+    }
+
+    fn write_runs(&self, format: SuiteFormat, plan: &Plan, runs: &[Run]) -> Result<(), CliError> {
+        let suite = Suite::new(plan, runs)?;
+        write_suite(&self.out, format, &suite)?;
         say!(
             "{}: {} runs of {} optimisers on {} functions",
             self.out.display(),
@@ -41,7 +66,22 @@ impl Export {
             suite.algorithms.len(),
             suite.functions.len()
         );
-        say!("read it with\n  {}", reader(self.format, &self.out));
+        say!("read it with\n  {}", reader(format, &self.out));
+        Ok(())
+    }
+
+    fn write_motions(
+        &self,
+        format: MotionFormat,
+        plan: &Plan,
+        runs: &[Run],
+    ) -> Result<(), CliError> {
+        if !plan.instances.iter().any(Instance::is_task) {
+            let message = "test functions have no motions".to_owned();
+            return Err(CliError::Usage { message, help: Some("expected ioh or coco".to_owned()) });
+        }
+        let count = export::write_motions(&self.out, format, plan, runs)?;
+        say!("{}: the best motions of {count} instances", self.out.display());
         Ok(())
     }
 }

@@ -67,7 +67,7 @@ enum Verb {
     /// Merge many small files of results into few, while others run or read
     #[cfg(feature = "harness")]
     Compact(compact::Compact),
-    /// Write an experiment's runs in a format that other benchmarking tools read
+    /// Write an experiment's runs as other benchmarking tools read them, or its best motions
     #[cfg(feature = "harness")]
     Export(export::Export),
     /// Find the best motion for one task

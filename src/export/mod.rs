@@ -7,6 +7,8 @@ mod csv;
 mod ioh;
 mod joint_trajectory;
 #[cfg(feature = "harness")]
+mod motions;
+#[cfg(feature = "harness")]
 mod parquet;
 #[cfg(feature = "harness")]
 mod suite;
@@ -15,6 +17,8 @@ use std::path::Path;
 
 use crate::output::{FileError, write_file};
 use crate::problem::Motion;
+#[cfg(feature = "harness")]
+pub use motions::write_motions;
 #[cfg(feature = "harness")]
 pub use suite::{Algorithm, Function, Objective, Suite, SuiteError, Trial};
 
@@ -34,11 +38,11 @@ pub enum MotionFormat {
 
 /// A format for the runs of an experiment.
 #[cfg(feature = "harness")]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SuiteFormat {
-    /// IOHprofiler, read by iohinspector
+    /// IOHprofiler, read by iohinspector.
     Ioh,
-    /// COCO, read by cocopp
+    /// COCO, read by cocopp.
     Coco,
 }
 
@@ -82,6 +86,15 @@ impl MotionFormat {
             "parquet" => Some(Self::Parquet),
             "yaml" | "yml" => Some(Self::Yaml),
             _ => None,
+        }
+    }
+
+    /// The end of its files' names.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Parquet => "parquet",
+            Self::Yaml => "yaml",
         }
     }
 

@@ -176,15 +176,7 @@ fn whole(run: &Run) -> Trace {
 fn algorithms(plan: &Plan) -> Vec<Algorithm> {
     let mut taken = HashSet::new();
     let algorithms = plan.optimisers.iter().map(|entrant| {
-        let plain = file_name(&entrant.label);
-        let mut folder = plain.clone();
-        // Some file systems take capitals and small letters for the same.
-        for n in 2.. {
-            if taken.insert(folder.to_lowercase()) {
-                break;
-            }
-            folder = format!("{plain}-{n}");
-        }
+        let folder = unlike(&file_name(&entrant.label), &mut taken);
         let settings = serde_json::to_string(&entrant.settings).unwrap_or_default();
         Algorithm { name: one_line(&entrant.label), folder, settings }
     });
@@ -235,8 +227,20 @@ fn one_line(label: &str) -> String {
     label.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
+/// A name, with a number where it is taken. Some file systems take capitals and small letters for the same.
+pub(super) fn unlike(plain: &str, taken: &mut HashSet<String>) -> String {
+    let mut name = plain.to_owned();
+    for n in 2.. {
+        if taken.insert(name.to_lowercase()) {
+            break;
+        }
+        name = format!("{plain}-{n}");
+    }
+    name
+}
+
 /// A label as part of a file's name on any system: letters, digits, `-` and `_`, a hundred at most.
-fn file_name(label: &str) -> String {
+pub(super) fn file_name(label: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     label.trim().chars().map(plain).take(100).collect()
 }

@@ -216,3 +216,35 @@ fn folders_without_results_are_named() {
     fails("nowhere", "export_no_results");
     fails(".", "export_no_runs");
 }
+
+/// The best motion of every instance, in the formats of `plan --motion`: at rest at both ends, and as long as
+/// the table of best runs says.
+#[test]
+fn best_motions_are_exported() {
+    let text = "name = 'two'\nseeds = 1\nbudget = { evaluations = 300 }\n[sweep]\nterms = [2, 3]\n\
+        [[optimiser]]\nscp = { starts = 1 }\n";
+    let folder = Folder::new().with("two.toml", text);
+    assert!(folder.run(&["run", "two.toml", "--out", "results"]).status.success());
+    assert!(folder.run(&["report", "results"]).status.success());
+    for format in ["csv", "parquet", "yaml"] {
+        let output = folder.run(&["export", "results", "--format", format, "--out", format]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let names: Vec<String> = files(&folder.path().join(format))
+            .iter()
+            .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned())
+            .collect();
+        assert_eq!(names, ["terms_2", "terms_3"].map(|name| format!("{name}.{format}")));
+    }
+    let mut best = csv::Reader::from_path(folder.path().join("results/tables/best.csv")).unwrap();
+    let column = best.headers().unwrap().iter().position(|name| name == "t_f [s]").unwrap();
+    for (row, terms) in best.records().map(Result::unwrap).zip([2, 3]) {
+        let path = folder.path().join(format!("csv/terms_{terms}.csv"));
+        let rows: Vec<csv::StringRecord> =
+            csv::Reader::from_path(path).unwrap().records().map(Result::unwrap).collect();
+        let real = |row: &csv::StringRecord, i: usize| row[i].parse::<f64>().unwrap();
+        assert!((real(rows.last().unwrap(), 0) - real(&row, column)).abs() < 1e-9);
+        for end in [&rows[..6], &rows[rows.len() - 6..]] {
+            assert!(end.iter().all(|row| real(row, 3).abs() < 1e-9), "{end:?}");
+        }
+    }
+}

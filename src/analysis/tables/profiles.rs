@@ -1,6 +1,6 @@
 //! Performance and data profiles.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use polars::prelude::*;
 
@@ -41,7 +41,7 @@ pub(super) fn tables(field: &Field<'_>) -> PolarsResult<[Table; 2]> {
 /// Evaluations to the k-th target for every problem and optimiser, and every problem's dimension.
 fn problems(field: &Field<'_>, k: usize) -> (Vec<Vec<f64>>, Vec<usize>) {
     let solvers = field.plan.optimisers.len();
-    let mut rows: HashMap<(usize, u64), Vec<Option<f64>>> = HashMap::new();
+    let mut rows: BTreeMap<(usize, u64), Vec<Option<f64>>> = BTreeMap::new();
     for run in field.runs {
         if let Some(&target) = field.targets.values[run.instance].get(k) {
             let row = rows.entry((run.instance, run.seed)).or_insert_with(|| vec![None; solvers]);
