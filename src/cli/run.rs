@@ -44,9 +44,6 @@ pub(super) struct Run {
     fresh: bool,
 }
 
-/// More files than that are merged, since reading them would take long.
-const MANY_BATCHES: usize = 1_000;
-
 /// Prints a line for every run that ends.
 struct Lines<'a> {
     bar: &'a Bar,
@@ -131,9 +128,6 @@ impl Run {
         {
             let bar = Bar::new(evaluations, watch.clone());
             experiment::run(plan, mine, store, jobs, &watch, &Lines { bar: &bar, plan })?;
-        }
-        if store.batch_count()? > MANY_BATCHES {
-            store.compact()?;
         }
         if watch.is_interrupted() {
             let stored = store.keys()?;

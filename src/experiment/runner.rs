@@ -16,6 +16,8 @@ pub trait Progress: Sync {
 
 /// Runs that together are allowed fewer evaluations than this are stored as one batch.
 const EVALUATIONS_A_BATCH: u64 = 500;
+/// After so many batches the store is tidied.
+const BATCHES_TO_TIDY: usize = 1_000;
 /// What is done waits no longer to be stored, however few evaluations it took.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
@@ -39,15 +41,20 @@ pub fn run(
     // polars has threads of its own, and a worker that waits for them takes up whatever task there is.
     let next = AtomicUsize::new(0);
     let work = || -> Result<(), StoreError> {
-        while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
+        loop {
+            let place = next.fetch_add(1, Ordering::Relaxed);
+            let Some(batch) = batches.get(place) else { return Ok(()) };
             run_batch(plan, batch, jobs, store, watch, progress)?;
+            if (place + 1) % BATCHES_TO_TIDY == 0 {
+                store.tidy()?;
+            }
         }
-        Ok(())
     };
     // After a failure no thread begins another batch.
     let outcomes =
         pool.broadcast(|_| work().inspect_err(|_| next.store(batches.len(), Ordering::Relaxed)));
-    Ok(outcomes.into_iter().collect::<Result<(), _>>()?)
+    outcomes.into_iter().collect::<Result<(), _>>()?;
+    Ok(store.tidy()?)
 }
 
 /// Cuts runs, in their order, into batches: long runs alone, short ones together.

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use polars::prelude::*;
 
-/// What two experiments that are the same may differ in.
-const MEASURED: [&str; 3] = ["seconds", "seconds_in_problem", "date"];
+/// What two experiments that are the same may differ in: wall times, and with how many others they were taken.
+const MEASURED: [&str; 4] = ["seconds", "seconds_in_problem", "threads", "date"];
 
 /// All rows of a table, whatever files they stand in, sorted by run and evaluation, without what
 /// was measured.

@@ -12,6 +12,9 @@ const MOST_RUNS: usize = 10_000;
 /// …or so many rows of traces.
 const MOST_ROWS: usize = 1_000_000;
 
+/// More batches than that are worth a compaction.
+const MANY: usize = 1_000;
+
 /// What a compaction did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Compaction {
@@ -63,6 +66,11 @@ impl Store {
         let before = self.batch_count()?;
         self.merge(|_| true)?;
         Ok(Compaction { before, after: self.batch_count()? })
+    }
+
+    /// Merges batches where there are so many that reading them would take long.
+    pub(crate) fn tidy(&self) -> Result<(), StoreError> {
+        if self.batch_count()? > MANY { self.merge(|_| true) } else { Ok(()) }
     }
 
     /// Removes runs.
