@@ -42,12 +42,16 @@ pub(super) struct Run {
     /// Do again what is already stored
     #[arg(long)]
     fresh: bool,
+    /// Say nothing of runs that end as they should
+    #[arg(long)]
+    quiet: bool,
 }
 
 /// Prints a line for every run that ends.
 struct Lines<'a> {
     bar: &'a Bar,
     plan: &'a Plan,
+    quiet: bool,
 }
 
 impl Progress for Lines<'_> {
@@ -61,6 +65,9 @@ impl Progress for Lines<'_> {
             cost => format!("f {cost:.3e}"),
         };
         let (status, message) = (record.status.name(), record.status.message());
+        if self.quiet && message.is_empty() {
+            return;
+        }
         let (warning, colon) = if message.is_empty() { ("", "") } else { ("warning: ", ": ") };
         let message = message.lines().next().unwrap_or_default();
         self.bar.line(&format!(
@@ -127,7 +134,14 @@ impl Run {
         let jobs = self.jobs.map_or_else(default_jobs, usize::from);
         {
             let bar = Bar::new(evaluations, watch.clone());
-            experiment::run(plan, mine, store, jobs, &watch, &Lines { bar: &bar, plan })?;
+            experiment::run(
+                plan,
+                mine,
+                store,
+                jobs,
+                &watch,
+                &Lines { bar: &bar, plan, quiet: self.quiet },
+            )?;
         }
         if watch.is_interrupted() {
             let stored = store.keys()?;

@@ -45,7 +45,7 @@ pub fn run(
             let place = next.fetch_add(1, Ordering::Relaxed);
             let Some(batch) = batches.get(place) else { return Ok(()) };
             run_batch(plan, batch, jobs, store, watch, progress)?;
-            if (place + 1) % BATCHES_TO_TIDY == 0 {
+            if (place + 1).is_multiple_of(BATCHES_TO_TIDY) {
                 store.tidy()?;
             }
         }
