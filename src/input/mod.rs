@@ -1,18 +1,23 @@
 //! Reading what users write: TOML with the place of every mistake, and checks that serde runs while
 //! it still knows that place.
 
-use std::fmt::{self, Display};
-use std::num::NonZeroU64;
+mod checked;
+
+use std::fmt::Display;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
-use serde::de::{DeserializeOwned, Deserializer, Error as _, IntoDeserializer, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize};
+use serde::de::DeserializeOwned;
 use thiserror::Error;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+pub use checked::{
+    Finite, Fraction, PerJoint, Positive, count, count_from, finite, finite_array, fraction,
+    interval, non_negative, optional_count, positive, positive_interval, share,
+};
 
 /// A file that cannot be used, with the place in it where one is known.
 #[derive(Debug, Error, Diagnostic)]
@@ -175,151 +180,4 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         .into_iter()
         .filter(|k| closeness(k) > 0.75)
         .max_by(|a, b| closeness(a).total_cmp(&closeness(b)))
-}
-
-/// A number that is neither infinite nor NaN.
-pub fn finite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    let value = f64::deserialize(deserializer)?;
-    check(value, value.is_finite(), "a finite number")
-}
-
-/// A finite number above zero.
-pub fn positive<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    let value = f64::deserialize(deserializer)?;
-    check(value, value.is_finite() && value > 0.0, "a finite number above zero")
-}
-
-/// A finite number, zero or above.
-pub fn non_negative<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    let value = f64::deserialize(deserializer)?;
-    check(value, value.is_finite() && value >= 0.0, "a finite number, zero or above")
-}
-
-/// A whole number from 1 to `MOST`.
-pub fn count<'de, const MOST: u64, D, T>(deserializer: D) -> Result<T, D::Error>
-where
-    D: Deserializer<'de>,
-    T: TryFrom<NonZeroU64>,
-{
-    count_from::<1, MOST, D, T>(deserializer)
-}
-
-/// A whole number from `LEAST` to `MOST`, where there may be none.
-pub fn optional_count<'de, const LEAST: u64, const MOST: u64, D, T>(
-    deserializer: D,
-) -> Result<Option<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: TryFrom<NonZeroU64>,
-{
-    count_from::<LEAST, MOST, D, T>(deserializer).map(Some)
-}
-
-/// A whole number from `LEAST` to `MOST`.
-pub fn count_from<'de, const LEAST: u64, const MOST: u64, D, T>(
-    deserializer: D,
-) -> Result<T, D::Error>
-where
-    D: Deserializer<'de>,
-    T: TryFrom<NonZeroU64>,
-{
-    let value = i64::deserialize(deserializer)?;
-    let within = u64::try_from(value).ok().filter(|n| (LEAST..=MOST).contains(n));
-    let count = within.and_then(NonZeroU64::new);
-    count.and_then(|count| T::try_from(count).ok()).ok_or_else(|| {
-        D::Error::custom(format!("found {value}, expected a whole number from {LEAST} to {MOST}"))
-    })
-}
-
-/// A number from 0 to 1.
-pub fn fraction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    let value = f64::deserialize(deserializer)?;
-    check(value, (0.0..=1.0).contains(&value), "a number from 0 to 1")
-}
-
-/// A number above 0, 1 at most.
-pub fn share<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    let value = f64::deserialize(deserializer)?;
-    check(value, value > 0.0 && value <= 1.0, "a number above 0, 1 at most")
-}
-
-/// A fixed number of finite numbers.
-pub fn finite_array<'de, const N: usize, D>(deserializer: D) -> Result<[f64; N], D::Error>
-where
-    D: Deserializer<'de>,
-    [Finite; N]: Deserialize<'de>,
-{
-    Ok(<[Finite; N]>::deserialize(deserializer)?.map(|f| f.0))
-}
-
-/// A finite number, checked where it stands in a list.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Finite(#[serde(deserialize_with = "finite")] pub f64);
-
-/// A finite number above zero, checked where it stands in a list.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Positive(#[serde(deserialize_with = "positive")] pub f64);
-
-/// A number from 0 to 1, checked where it stands in a list.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Fraction(#[serde(deserialize_with = "fraction")] pub f64);
-
-/// One positive number for all joints, or one each.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum PerJoint {
-    /// The same for all.
-    All(f64),
-    /// From the base outward.
-    Each(Vec<f64>),
-}
-
-impl<'de> Deserialize<'de> for PerJoint {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct OneOrMany;
-        impl<'de> Visitor<'de> for OneOrMany {
-            type Value = PerJoint;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a positive number, or a list of one for each joint")
-            }
-
-            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<PerJoint, E> {
-                positive(value.into_deserializer()).map(PerJoint::All)
-            }
-
-            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<PerJoint, E> {
-                self.visit_f64(value as f64)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<PerJoint, A::Error> {
-                let mut values = Vec::new();
-                while let Some(Positive(value)) = list.next_element()? {
-                    values.push(value);
-                }
-                Ok(PerJoint::Each(values))
-            }
-        }
-        deserializer.deserialize_any(OneOrMany)
-    }
-}
-
-/// A two-element `[lower, upper]` with `lower < upper`.
-pub fn interval<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {
-    let [lower, upper] = finite_array::<2, D>(deserializer)?;
-    if lower < upper {
-        Ok([lower, upper])
-    } else {
-        Err(D::Error::custom(format!("empty range {lower} to {upper}, expected [lower, upper]")))
-    }
-}
-
-/// A two-element `[lower, upper]` with `0 < lower < upper`.
-pub fn positive_interval<'de, D: Deserializer<'de>>(d: D) -> Result<[f64; 2], D::Error> {
-    let [lower, upper] = interval(d)?;
-    check(lower, lower > 0.0, "a range above zero").map(|lower| [lower, upper])
-}
-
-fn check<E: serde::de::Error>(value: f64, good: bool, expected: &str) -> Result<f64, E> {
-    if good { Ok(value) } else { Err(E::custom(format!("found {value}, expected {expected}"))) }
 }
