@@ -7,7 +7,7 @@ use polars::prelude::*;
 ///
 /// A text column in which every cell is empty is left out.
 pub fn render(frame: &DataFrame) -> PolarsResult<String> {
-    let mut table = drawn(frame)?;
+    let mut table = drawn(frame, cell)?;
     table
         .load_preset(presets::NOTHING)
         .set_style(TableComponent::HeaderLines, '─')
@@ -17,19 +17,19 @@ pub fn render(frame: &DataFrame) -> PolarsResult<String> {
 
 /// A table in Markdown, with the cells of [`render`].
 pub fn markdown(frame: &DataFrame) -> PolarsResult<String> {
-    let mut table = drawn(frame)?;
+    let mut table = drawn(frame, |value| cell(value).replace('|', "\\|"))?;
     table.load_preset(presets::ASCII_MARKDOWN);
     Ok(format!("{table}\n"))
 }
 
-fn drawn(frame: &DataFrame) -> PolarsResult<Table> {
+fn drawn(frame: &DataFrame, text: fn(&AnyValue<'_>) -> String) -> PolarsResult<Table> {
     let shown = shown(frame);
     let mut table = Table::new();
     table
         .set_content_arrangement(ContentArrangement::Disabled)
         .set_header(shown.iter().map(|column| column.name().as_str()));
     for i in 0..frame.height() {
-        table.add_row(cells(&shown, i, cell)?);
+        table.add_row(cells(&shown, i, text)?);
     }
     for (i, column) in shown.iter().enumerate() {
         if let (false, Some(column)) = (column.dtype().is_string(), table.column_mut(i)) {
@@ -109,7 +109,8 @@ fn cells(
 fn exact(value: &AnyValue<'_>) -> String {
     match value {
         AnyValue::Float64(number) if number.is_nan() => String::new(),
-        AnyValue::Float64(number) => number.to_string(),
+        // With an exponent where the number is far from one.
+        AnyValue::Float64(number) => format!("{number:?}"),
         AnyValue::Null => String::new(),
         other => cell(other),
     }

@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use super::CliError;
 use super::results::ResultsFolder;
+use super::{CliError, watch};
 
 /// Merge many small files of results into few, while others run or read
 #[derive(Debug, Args)]
@@ -15,8 +15,11 @@ pub(super) struct Compact {
 impl Compact {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let results = self.results.open()?;
-        let done = results.store.compact()?;
-        say!("{}: {} files a table, {} before", results.folder.display(), done.after, done.before);
+        let folder = results.folder.display();
+        match results.store.compact(&watch())? {
+            Some(done) => say!("{folder}: {} files a table, {} before", done.after, done.before),
+            None => say!("{folder}: another process is merging files"),
+        }
         Ok(())
     }
 }

@@ -45,7 +45,7 @@ impl Export {
             return Err(no_results(&folder, "none of its experiment's runs"));
         }
         if runs.len() < plan.runs.len() {
-            eprintln!("note: {} of {} runs are stored so far", runs.len(), plan.runs.len());
+            note!("note: {} of {} runs are stored so far", runs.len(), plan.runs.len());
         }
         match self.format {
             Format::Ioh => self.write_runs(SuiteFormat::Ioh, &plan, &runs),

@@ -7,6 +7,14 @@ macro_rules! say {
     };
 }
 
+/// Prints a line to standard error. Where that cannot be written, what it would have said is of no use to
+/// anybody, and no reason to give up.
+macro_rules! note {
+    ($($argument:tt)*) => {
+        $crate::cli::note(format_args!($($argument)*))
+    };
+}
+
 mod check;
 #[cfg(feature = "harness")]
 mod compact;
@@ -175,7 +183,7 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let code = error.exit_code();
-            eprintln!("{:?}", Report::new(error));
+            note!("{:?}", Report::new(error));
             code
         }
     }
@@ -192,6 +200,11 @@ fn say(line: fmt::Arguments<'_>) -> Result<(), CliError> {
     }
 }
 
+/// Prints a line to standard error, if it can be.
+fn note(line: fmt::Arguments<'_>) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
 /// The file named, or a text that comes with the program.
 fn read_or(
     file: Option<&Path>,
@@ -203,7 +216,7 @@ fn read_or(
 /// Says what is unphysical about a robot.
 fn warn_of(robot: &Robot) {
     if let Some(warning) = robot.warning() {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
 }
 

@@ -107,7 +107,7 @@ impl Plan {
         }
         let residual = found.assessment.residual().to_degrees();
         if residual > GOAL_REACHED_DEG {
-            eprintln!(
+            note!(
                 "warning: the base ends {residual:.3}° from its goal; more terms, another optimiser, such \
                  as a hybrid, a larger budget or a larger `weights.base` may bring it there"
             );
@@ -156,7 +156,7 @@ impl Plan {
         let (problem, cost) = (found.problem.task(), found.assessment.cost);
         let beaten = BestKnown::of(problem).filter(|known| known.is_beaten_by(cost));
         if let Some(known) = beaten {
-            eprintln!("warning: J {cost:.9} is below the best known, {}", known.j);
+            note!("warning: J {cost:.9} is below the best known, {}", known.j);
         }
         if self.entry || beaten.is_some() {
             let Accuracy { attitude_steps, peak_intervals } = problem.accuracy();
@@ -167,7 +167,7 @@ impl Plan {
             );
             let (coefficients, assessment) = (&found.coefficients, &found.assessment);
             let entry = BestKnown::new(problem, task, coefficients, assessment, found_by);
-            eprintln!("the entry for results/best-known.toml:\n\n{entry}");
+            note!("the entry for results/best-known.toml:\n\n{entry}");
         }
     }
 

@@ -38,7 +38,7 @@ impl Bar {
                     bar.set_position(watch.evaluations());
                     if !on_terminal && said.elapsed() >= BETWEEN_LINES {
                         said = Instant::now();
-                        eprintln!("{} of {evaluations} evaluations", watch.evaluations());
+                        note!("{} of {evaluations} evaluations", watch.evaluations());
                     }
                     park_timeout(Duration::from_millis(100));
                 }
@@ -53,7 +53,7 @@ impl Bar {
         if std::io::stderr().is_terminal() {
             self.display.println(line);
         } else {
-            eprintln!("{line}");
+            note!("{line}");
         }
     }
 }

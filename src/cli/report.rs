@@ -81,7 +81,7 @@ pub(super) fn report(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), Cli
     say!("results: {}, figures: {}", folder.display(), figures.display());
     let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
     if failed > 0 {
-        eprintln!("warning: {failed} of {} runs failed or found nothing", runs.len());
+        note!("warning: {failed} of {} runs failed or found nothing", runs.len());
     }
     Ok(())
 }

@@ -50,8 +50,8 @@ pub(super) fn no_results(folder: &Path, found: &str) -> CliError {
 /// What `run` keeps the experiment in.
 pub(super) const EXPERIMENT: &str = "experiment.toml";
 
-/// The command that does what is missing from a folder.
+/// The command that does what is missing from a folder, as one types it.
 pub(super) fn command(folder: &Path) -> String {
-    let folder = folder.display();
-    format!("driftless run {folder}/{EXPERIMENT} --out {folder}")
+    let quoted = |path: &Path| shell_words::quote(&path.display().to_string()).into_owned();
+    format!("driftless run {} --out {}", quoted(&folder.join(EXPERIMENT)), quoted(folder))
 }

@@ -91,6 +91,7 @@ impl Run {
         let plan = Plan::new(&file, &document)?;
         warn_of_robot(&plan);
         let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
+        check_folder(&folder, &file.name)?;
         let store = Store::open(&folder)?;
         keep_inputs(file.with_targets(&plan), &document, &folder)?;
         let mine = |place: usize| shard.is_none_or(|shard| shard.holds(place));
@@ -129,7 +130,7 @@ impl Run {
         let missing = mine.iter().filter(|run| !stored.contains(&run.key));
         let (count, evaluations) = missing.fold((0, 0), |(n, sum), run| (n + 1, sum + run.budget));
         if count < mine.len() {
-            eprintln!("{} of {} runs are stored already", mine.len() - count, mine.len());
+            note!("{} of {} runs are stored already", mine.len() - count, mine.len());
         }
         let jobs = self.jobs.map_or_else(default_jobs, usize::from);
         {
@@ -146,8 +147,9 @@ impl Run {
         if watch.is_interrupted() {
             let stored = store.keys()?;
             let stored = mine.iter().filter(|run| stored.contains(&run.key)).count();
+            let without = if self.fresh { " without --fresh" } else { "" };
             return Err(CliError::Interrupted(format!(
-                "{stored} of {} runs are stored in {}; the same command goes on from there",
+                "{stored} of {} runs are stored in {}; the same command{without} goes on from there",
                 mine.len(),
                 folder.display()
             )));
@@ -161,9 +163,25 @@ fn told(choice: ShardChoice) -> Result<Shard, CliError> {
     let variable = |name: &str| Some(std::env::var_os(name)?.to_string_lossy().into_owned());
     let (shard, variable) = choice.resolve(variable)?;
     if let Some(variable) = variable {
-        eprintln!("shard {shard}, from {variable}");
+        note!("shard {shard}, from {variable}");
     }
     Ok(shard)
+}
+
+/// Results of several experiments in one folder would leave all but one without their definition.
+fn check_folder(folder: &Path, name: &str) -> Result<(), CliError> {
+    let Ok(document) = Document::read(&folder.join(EXPERIMENT)) else { return Ok(()) };
+    match ExperimentFile::read(&document) {
+        Ok(before) if before.name != name => Err(CliError::Usage {
+            message: format!(
+                "{} holds the results of the experiment `{}`, expected those of `{name}`",
+                folder.display(),
+                before.name
+            ),
+            help: Some("choose another folder with --out".to_owned()),
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// Keeps what the experiment was, so that it can be run again from its results.
@@ -179,7 +197,7 @@ fn keep_inputs(
         file.task = file.task.map(|task| task.with_robot("robot.toml"));
     }
     if keep(&folder.join(EXPERIMENT), &toml::to_string(&file)?)? {
-        eprintln!(
+        note!(
             "note: {} holds runs of another version of this experiment; they stay there, and those \
              that no longer belong are left out of the summary",
             folder.display()
@@ -211,7 +229,7 @@ pub(super) fn warn_of_robot(plan: &Plan) {
 /// Says when a comparison is not one at the same price.
 pub(super) fn warn_of_budgets(plan: &Plan) {
     if plan.is_uneven() {
-        eprintln!(
+        note!(
             "warning: budgets differ within the field, so final costs do not compare; evaluations to a \
              target do"
         );

@@ -46,7 +46,7 @@ pub struct ExperimentFile {
 
 /// The `budget` table.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
+#[serde(deny_unknown_fields, expecting = "a table such as `{ evaluations = 150_000 }`")]
 pub struct BudgetTable {
     /// Evaluations a run.
     #[serde(deserialize_with = "count::<1_000_000_000_000, _, _>")]

@@ -46,7 +46,7 @@ pub fn run(
             let Some(batch) = batches.get(place) else { return Ok(()) };
             run_batch(plan, batch, jobs, store, watch, progress)?;
             if (place + 1).is_multiple_of(BATCHES_TO_TIDY) {
-                store.tidy()?;
+                store.tidy(watch)?;
             }
         }
     };
@@ -54,19 +54,21 @@ pub fn run(
     let outcomes =
         pool.broadcast(|_| work().inspect_err(|_| next.store(batches.len(), Ordering::Relaxed)));
     outcomes.into_iter().collect::<Result<(), _>>()?;
-    Ok(store.tidy()?)
+    Ok(store.tidy(watch)?)
 }
 
 /// Cuts runs, in their order, into batches: long runs alone, short ones together.
 fn batches<'a>(mut runs: &'a [&'a RunSpec]) -> Vec<&'a [&'a RunSpec]> {
     let mut batches = Vec::new();
     while !runs.is_empty() {
-        let mut budgets = runs.iter().scan(0, |sum: &mut u64, run| {
-            *sum = sum.saturating_add(run.budget);
-            Some(*sum)
+        let mut sum = 0_u64;
+        let short = runs.iter().position(|run| {
+            let is_long = run.budget >= EVALUATIONS_A_BATCH;
+            let is_full = sum >= EVALUATIONS_A_BATCH;
+            sum = sum.saturating_add(run.budget);
+            is_long || is_full
         });
-        let full = budgets.position(|sum| sum >= EVALUATIONS_A_BATCH);
-        let (batch, others) = runs.split_at(full.map_or(runs.len(), |last| last + 1));
+        let (batch, others) = runs.split_at(short.unwrap_or(runs.len()).max(1));
         batches.push(batch);
         runs = others;
     }

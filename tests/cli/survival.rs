@@ -116,35 +116,42 @@ fn killed_processes_lose_nothing_and_do_nothing_twice() {
     assert_eq!(results(&folder.path().join("killed")), calm);
 }
 
+/// Four shards, the first of them twice; two processes at a time merge what there is, every other one is
+/// killed; this one reads.
 #[test]
 fn shards_share_a_folder_that_is_compacted_and_read_meanwhile() {
     let (folder, calm) = undisturbed();
     let shared = folder.path().join("shared");
-    let shards = ["0/4", "1/4", "2/4", "3/4"].map(|shard| {
-        start(
-            &folder,
-            &shard.replace('/', "-"),
-            &["brief.toml", "--out", "shared", "--shard", shard, "--jobs", "1"],
-        )
-    });
-    let mut shards: Vec<Child> = shards.into();
-    let mut before = 0;
-    let mut compactions = 0;
+    let shards = ["0/4", "1/4", "2/4", "3/4", "0/4"].iter().enumerate();
+    let mut shards: Vec<Child> = shards
+        .map(|(i, shard)| {
+            let args = ["brief.toml", "--out", "shared", "--shard", shard, "--jobs", "1"];
+            start(&folder, &format!("log{i}"), &args)
+        })
+        .collect();
+    let compact = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_driftless"));
+        let command = command.args(["compact", "shared"]).current_dir(folder.path());
+        command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    };
+    let mut rng = Rng::new(30);
+    let (mut before, mut compactions) = (0, 0);
     while shards.iter_mut().any(|shard| shard.try_wait().unwrap().is_none()) {
-        let compaction = Command::new(env!("CARGO_BIN_EXE_driftless"))
-            .args(["compact", "shared"])
-            .current_dir(folder.path())
-            .stderr(Stdio::null())
-            .spawn();
-        let mut compaction = compaction.unwrap();
-        while compaction.try_wait().unwrap().is_none() {
+        let mut pair = [compact(), compact()];
+        if rng.index(2) == 0 {
+            sleep(Duration::from_micros(rng.uniform(0.0, 40_000.0) as u64));
+            let _ = pair[0].kill();
+        }
+        while pair.iter_mut().any(|process| process.try_wait().unwrap().is_none()) {
             before = check_reading(&shared, before);
         }
         compactions += 1;
     }
+    println!("{compactions} pairs of compactions");
     assert!(compactions > 2, "only {compactions} compactions");
-    for mut shard in shards {
-        assert!(shard.wait().unwrap().success());
+    for (i, mut shard) in shards.into_iter().enumerate() {
+        let log = fs::read_to_string(folder.path().join(format!("log{i}"))).unwrap();
+        assert!(shard.wait().unwrap().success(), "{log}");
     }
     let output = folder.run(&["compact", "shared"]);
     assert_eq!(stdout(&output).matches("1 files a table").count(), 1, "{}", stdout(&output));

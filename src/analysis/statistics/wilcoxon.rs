@@ -24,13 +24,12 @@ const EXACT: usize = 50;
 ///
 /// Pairs are ranked by how much their values differ. Two equal values, infinite ones too, do not
 /// differ, and one infinite value differs more than any two finite ones do. The p-value is exact for up
-/// to 50 pairs where all differ, each by another amount; otherwise that of the normal approximation,
+/// to 50 pairs that differ, with the ranks as they are, tied or not; otherwise that of the normal approximation,
 /// corrected for ties but not for continuity. Values past the end of the shorter list have no pair.
 ///
 /// Wilcoxon (1945), doi 10.2307/3001968; pairs that do not differ are left out, as there.
 pub fn wilcoxon(first: &[f64], second: &[f64]) -> Wilcoxon {
     let pairs = first.iter().zip(second);
-    let all = pairs.len();
     let differences: Vec<f64> = pairs.filter(|(a, b)| a != b).map(|(a, b)| a - b).collect();
     let sizes: Vec<f64> = differences.iter().map(|difference| difference.abs()).collect();
     let ranks = average_ranks(&sizes);
@@ -39,36 +38,26 @@ pub fn wilcoxon(first: &[f64], second: &[f64]) -> Wilcoxon {
         signed.filter(|(_, d)| (**d < 0.0) == negative).fold(0.0, |sum, (rank, _)| sum + rank)
     };
     let (first_lower, second_lower) = (sum(true), sum(false));
-    let exact = differences.len() == all && all <= EXACT && all_differ(&sizes);
+    let exact = differences.len() <= EXACT;
     let lesser = first_lower.min(second_lower);
-    let p = match differences.len() {
-        0 => 1.0,
-        n if exact => exact_p(n, lesser),
-        _ => normal_p(&ranks, lesser),
-    };
+    let p = if exact { exact_p(&ranks, lesser) } else { normal_p(&ranks, lesser) };
     Wilcoxon { pairs: differences.len(), first_lower, second_lower, p, exact }
 }
 
-fn all_differ(values: &[f64]) -> bool {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.windows(2).all(|pair| pair[0] != pair[1])
-}
-
-/// Each of the ranks 1 to `n` counts with probability ½: the share of the 2ⁿ sets of ranks whose sum is
-/// at most the lesser one, twice.
-fn exact_p(n: usize, lesser: f64) -> f64 {
+/// Each rank counts with probability ½: the share of the 2ⁿ sets of ranks whose sum is at most the lesser
+/// one, twice. Ranks of ties are halves, so all are doubled.
+fn exact_p(ranks: &[f64], lesser: f64) -> f64 {
     let mut sets_by_sum = vec![1.0];
-    for rank in 1..=n {
-        let mut with = vec![0.0; rank];
+    for rank in ranks {
+        let mut with = vec![0.0; (2.0 * rank) as usize];
         with.extend_from_slice(&sets_by_sum);
         for (with, without) in with.iter_mut().zip(&sets_by_sum) {
             *with += without;
         }
         sets_by_sum = with;
     }
-    let below: f64 = sets_by_sum.iter().take(lesser as usize + 1).sum();
-    (2.0 * below / 2_f64.powi(n as i32)).min(1.0)
+    let below: f64 = sets_by_sum.iter().take((2.0 * lesser) as usize + 1).sum();
+    (2.0 * below / 2_f64.powi(ranks.len() as i32)).min(1.0)
 }
 
 /// Each rank counts with probability ½, so the sum's mean is half of all and its variance a quarter of

@@ -1,17 +1,21 @@
 //! Many small files into few large ones.
 
 use std::collections::HashSet;
+use std::fs::{File, TryLockError};
+use std::time::SystemTime;
 
 use polars::prelude::*;
 
-use super::{Stack, Store, StoreError, TABLES, batch_name, only};
+use super::read::only;
+use super::{SEVERAL, Stack, Store, StoreError, TABLES, io_error};
+use crate::digest::digest;
+use crate::oracle::Watch;
 use crate::output::sync_folder;
 
-/// A merged batch is closed once it has so many runs…
+/// A merged batch has no more runs…
 const MOST_RUNS: usize = 10_000;
-/// …or so many rows of traces.
+/// …and no more rows of traces than that.
 const MOST_ROWS: usize = 1_000_000;
-
 /// More batches than that are worth a compaction.
 const MANY: usize = 1_000;
 
@@ -24,115 +28,161 @@ pub struct Compaction {
     pub after: usize,
 }
 
-/// Batches on their way into one.
+/// Batches with the same columns on their way into one.
 #[derive(Default)]
 struct Merged {
     sources: Vec<String>,
     keys: Vec<String>,
     tables: [Stack; 3],
+    /// Whether anything of the sources is left out.
+    lacks: bool,
 }
 
 impl Merged {
-    fn is_full(&self) -> bool {
-        let [traces, _, runs] = &self.tables;
-        is_large(traces.height(), runs.height())
-    }
-
     /// Whether a batch's tables have the columns of those that are here.
     fn fits(&self, tables: &[DataFrame; 3]) -> bool {
         let mut pairs = self.tables.iter().zip(tables);
         pairs.all(|(own, new)| own.schema().is_none_or(|schema| schema == new.schema()))
     }
 
-    fn add(&mut self, batch: String, tables: [DataFrame; 3]) -> PolarsResult<()> {
-        self.sources.push(batch);
-        self.keys.extend(keys(&tables[2])?);
+    /// Whether a batch's tables are too many for it.
+    fn overflows(&self, [traces, _, runs]: &[DataFrame; 3]) -> bool {
+        self.keys.len() + runs.height() > MOST_RUNS
+            || self.tables[0].height() + traces.height() > MOST_ROWS
+    }
+
+    fn add(
+        &mut self,
+        source: String,
+        keys: Vec<String>,
+        tables: [DataFrame; 3],
+    ) -> PolarsResult<()> {
+        self.sources.push(source);
+        self.keys.extend(keys);
         self.tables.iter_mut().zip(tables).try_for_each(|(own, new)| own.push(new))
     }
 }
 
-fn is_large(traces: usize, runs: usize) -> bool {
-    runs >= MOST_RUNS || traces >= MOST_ROWS
-}
-
-/// The keys of a table of runs.
-fn keys(runs: &DataFrame) -> PolarsResult<Vec<String>> {
-    Ok(runs.column("key")?.str()?.iter().flatten().map(str::to_owned).collect())
-}
-
 impl Store {
-    /// Merges small batches into large ones. Processes that write or read meanwhile need not care.
-    pub fn compact(&self) -> Result<Compaction, StoreError> {
+    /// Merges small batches into large ones. Processes that write or read meanwhile need not care. None
+    /// where another process is at it.
+    pub fn compact(&self, watch: &Watch) -> Result<Option<Compaction>, StoreError> {
         let before = self.batch_count()?;
-        self.merge(|_| true)?;
-        Ok(Compaction { before, after: self.batch_count()? })
+        let Some(_lock) = self.try_lock()? else { return Ok(None) };
+        self.merge(|_| true, watch)?;
+        Ok(Some(Compaction { before, after: self.batch_count()? }))
     }
 
-    /// Merges batches where there are so many that reading them would take long.
-    pub(crate) fn tidy(&self) -> Result<(), StoreError> {
-        if self.batch_count()? > MANY { self.merge(|_| true) } else { Ok(()) }
+    /// Merges batches where there are so many that reading them would take long, unless another process
+    /// is at it.
+    pub(in crate::experiment) fn tidy(&self, watch: &Watch) -> Result<(), StoreError> {
+        if self.batch_count()? > MANY {
+            self.compact(watch)?;
+        }
+        Ok(())
     }
 
     /// Removes runs.
     pub fn remove(&self, keys: &HashSet<&str>) -> Result<(), StoreError> {
-        self.merge(|key| !keys.contains(key))
+        let lock = self.lock_file()?;
+        lock.lock().map_err(|source| io_error("lock", &self.folder, source))?;
+        self.merge(|key| !keys.contains(key), &Watch::default())
+    }
+
+    /// Held by whoever removes batches, as long as the file is open.
+    fn lock_file(&self) -> Result<File, StoreError> {
+        let path = self.folder.join(".compacting");
+        let mut options = File::options();
+        options.create(true).write(true).truncate(false);
+        options.open(&path).map_err(|source| io_error("open", &path, source))
+    }
+
+    fn try_lock(&self) -> Result<Option<File>, StoreError> {
+        let lock = self.lock_file()?;
+        match lock.try_lock() {
+            Ok(()) => Ok(Some(lock)),
+            Err(TryLockError::WouldBlock) => Ok(None),
+            Err(TryLockError::Error(source)) => Err(io_error("lock", &self.folder, source)),
+        }
     }
 
     /// Merges small batches, and large ones that hold what is not to be kept. What is merged is removed
-    /// only when it is on the disk in its new place.
-    fn merge(&self, keep: impl Fn(&str) -> bool) -> Result<(), StoreError> {
-        let mut kept = HashSet::new();
-        let mut merged = Merged::default();
+    /// only when it is on the disk in its new place. A second copy of a run is left out only where this very
+    /// compaction has the first.
+    fn merge(&self, keep: impl Fn(&str) -> bool, watch: &Watch) -> Result<(), StoreError> {
+        let mut mine = HashSet::new();
+        let mut open: Vec<Merged> = Vec::new();
         for batch in self.batches()? {
-            let Some(tables) = self.tables_of(&batch)? else { continue };
-            let mine = keys(&tables[2])?;
-            let stays = |key: &str| keep(key) && !kept.contains(key);
-            let all_stay = mine.iter().all(|key| stays(key));
-            if all_stay && is_large(tables[0].height(), mine.len()) {
-                kept.extend(mine);
-                continue;
+            // What is not written yet is not removed either.
+            if watch.is_interrupted() {
+                return Ok(());
             }
-            let tables = if all_stay {
-                tables
-            } else {
+            let Some((keys, tables)) = self.small(&batch, &keep)? else { continue };
+            let stays = |key: &str| keep(key) && !mine.contains(key);
+            let lacks = !keys.iter().all(|key| stays(key));
+            let (keys, tables) = if lacks {
                 let [traces, clocks, runs] = &tables;
-                [only(traces, stays)?, only(clocks, stays)?, only(runs, stays)?]
+                let tables = [only(traces, stays)?, only(clocks, stays)?, only(runs, stays)?];
+                (keys.into_iter().filter(|key| stays(key)).collect(), tables)
+            } else {
+                (keys, tables)
             };
-            if merged.is_full() || !merged.fits(&tables) {
-                self.close(std::mem::take(&mut merged))?;
+            mine.extend(keys.iter().cloned());
+            let place = open.iter().position(|merged| merged.fits(&tables));
+            let place = place.unwrap_or_else(|| {
+                open.push(Merged::default());
+                open.len() - 1
+            });
+            if open[place].overflows(&tables) {
+                self.close(std::mem::take(&mut open[place]))?;
             }
-            merged.add(batch, tables)?;
-            kept.extend(mine);
+            open[place].lacks |= lacks;
+            open[place].add(batch, keys, tables)?;
         }
-        self.close(merged)
+        open.into_iter().try_for_each(|merged| self.close(merged))
     }
 
-    /// All tables of a batch, unless another process has just merged it.
-    fn tables_of(&self, batch: &str) -> Result<Option<[DataFrame; 3]>, StoreError> {
-        let read = || -> Result<[DataFrame; 3], StoreError> {
+    /// Keys and tables of a batch that is small or holds what is not to be kept; none of another, nor of
+    /// one that has just vanished.
+    #[expect(clippy::type_complexity, reason = "a batch's keys and tables")]
+    fn small(
+        &self,
+        batch: &str,
+        keep: impl Fn(&str) -> bool,
+    ) -> Result<Option<(Vec<String>, [DataFrame; 3])>, StoreError> {
+        let read = || {
+            let keys = self.keys_of(batch)?;
+            let is_large = keys.len() >= MOST_RUNS || self.trace_rows(batch)? >= MOST_ROWS;
+            if is_large && keys.iter().all(|key| keep(key)) {
+                return Ok(None);
+            }
             let [traces, clocks, runs] = TABLES.map(|table| self.read_file(table, batch, None));
-            Ok([traces?, clocks?, runs?])
+            Ok(Some((keys, [traces?, clocks?, runs?])))
         };
         match read() {
-            Err(StoreError::File(error)) if self.has_vanished(&error, batch) => Ok(None),
-            tables => tables.map(Some),
+            Err(error) if self.has_vanished(&error, batch) => Ok(None),
+            outcome => outcome,
         }
     }
 
     /// Writes a merged batch, then removes what it was merged from.
     fn close(&self, merged: Merged) -> Result<(), StoreError> {
-        let keys: Vec<&str> = merged.keys.iter().map(String::as_str).collect();
-        let name = batch_name(&keys);
-        if merged.sources == [name.as_str()] {
+        if merged.sources.len() == 1 && !merged.lacks {
             return Ok(());
         }
-        if !keys.is_empty() {
-            self.write_batch(&keys, merged.tables)?;
+        if !merged.keys.is_empty() {
+            self.write_batch(&new_name(&merged.keys), merged.tables)?;
             for table in TABLES {
                 sync_folder(&self.folder.join(table))?;
             }
         }
-        let mut others = merged.sources.iter().filter(|source| **source != name);
-        others.try_for_each(|source| self.remove_batch(source))
+        merged.sources.iter().try_for_each(|source| self.remove_batch(source))
     }
+}
+
+/// A name that no other process gives, nor this one another time: one may remove what another writes.
+fn new_name(keys: &[String]) -> String {
+    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    let unique = format!("{} {} {}", std::process::id(), now.as_nanos(), keys.join(" "));
+    format!("{SEVERAL}{}", digest(&unique))
 }
