@@ -123,8 +123,8 @@ fn is_blank(column: &Column) -> bool {
 fn cell(value: &AnyValue<'_>) -> String {
     match value {
         AnyValue::Float64(number) => significant(*number),
-        AnyValue::String(text) => (*text).to_owned(),
-        AnyValue::StringOwned(text) => text.to_string(),
+        AnyValue::String(text) => text.replace(['\n', '\r'], " "),
+        AnyValue::StringOwned(text) => text.replace(['\n', '\r'], " "),
         AnyValue::Null => "–".to_owned(),
         other => other.to_string(),
     }

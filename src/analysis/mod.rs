@@ -8,10 +8,11 @@ pub mod statistics;
 mod summary;
 pub mod tables;
 mod targets;
+mod ties;
 
 pub use convergence::{Curve, convergence};
 pub use format::{csv, latex, markdown, render};
 pub use runs::{Run, Step, best_run, load};
 pub use standing::{Failure, Standing, Tally, standing};
 pub use summary::summary;
-pub use targets::{Targets, targets};
+pub use targets::{Targets, least_found, targets};

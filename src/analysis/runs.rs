@@ -1,13 +1,11 @@
 //! Stored runs.
 
-use std::collections::HashMap;
-
 use polars::prelude::*;
 
 use crate::experiment::{Plan, RunSpec, Status, Store, StoreError};
 
 /// A stored run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Run {
     /// Key.
     pub key: String,
@@ -76,8 +74,7 @@ const COLUMNS: [&str; 9] = [
 /// The stored runs of a plan, in its order. They are labelled as the plan labels them: an edited
 /// experiment may call a stored run by another name.
 pub fn load(plan: &Plan, store: &Store) -> Result<Vec<Run>, StoreError> {
-    let planned: HashMap<&str, usize> =
-        plan.runs.iter().enumerate().map(|(i, run)| (run.key.as_str(), i)).collect();
+    let planned = plan.places();
     let wanted = |key: &str| planned.contains_key(key);
     let mut runs: Vec<Option<Run>> = Vec::new();
     runs.resize_with(plan.runs.len(), || None);

@@ -1,7 +1,5 @@
 //! How far an experiment is.
 
-use std::collections::HashMap;
-
 use crate::experiment::{Plan, Status, Store, StoreError};
 
 /// How far an experiment is.
@@ -56,8 +54,7 @@ pub struct Failure {
 
 /// Looks what is stored of a plan.
 pub fn standing(plan: &Plan, store: &Store) -> Result<Standing, StoreError> {
-    let planned: HashMap<&str, usize> =
-        plan.runs.iter().enumerate().map(|(i, run)| (run.key.as_str(), i)).collect();
+    let planned = plan.places();
     let mut tallies = vec![Tally::default(); plan.optimisers.len()];
     plan.runs.iter().for_each(|run| tallies[run.optimiser].planned += 1);
     let (mut failures, mut strangers) = (Vec::new(), 0);

@@ -2,15 +2,15 @@
 
 use polars::prelude::*;
 
+use super::Targets;
 use super::runs::{Run, groups};
 use super::statistics::quantile;
-use super::targets::{Targets, plain, targets};
 use crate::experiment::{Instance, Plan};
 
 /// One line an optimiser and group of instances: quartiles of the best cost over the runs, failures
 /// counted as infinite, and the best motion's residual \[°\] and duration \[s\] where there are
 /// motions. A column for each target says how many runs reached their instance's. Costs are certified.
-pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
+pub fn summary(plan: &Plan, runs: &[Run], targets: &Targets) -> PolarsResult<DataFrame> {
     let groups = groups(plan, runs);
     let texts = |value: &dyn Fn(&[&Run]) -> String| -> Vec<String> {
         groups.iter().map(|group| value(group)).collect()
@@ -27,7 +27,7 @@ pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
     };
     let best_cost = format!("best {}", plan.cost_symbol());
     let mut columns = df!(
-        "instance" => texts(&|g| plan.instances[g[0].instance].group.clone()),
+        "group" => texts(&|g| plan.instances[g[0].instance].group.clone()),
         "optimiser" => texts(&|g| plan.optimisers[g[0].optimiser].label.clone()),
         "runs" => counts(&|g| g.len() as u64),
         "failed" => counts(&|g| g.iter().filter(|run| run.cost.is_infinite()).count() as u64),
@@ -43,7 +43,7 @@ pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
     if !plan.instances.iter().any(Instance::is_task) {
         columns = columns.drop_many(["residual [°]", "t_f [s]"]);
     }
-    for column in target_columns(plan, &targets(plan, runs), &groups) {
+    for column in target_columns(plan, targets, &groups) {
         columns.with_column(column)?;
     }
     Ok(columns)
@@ -52,25 +52,23 @@ pub fn summary(plan: &Plan, runs: &[Run]) -> PolarsResult<DataFrame> {
 /// One column a target: how many runs reached their instance's; where groups have different ones, each cell
 /// says which.
 fn target_columns(plan: &Plan, targets: &Targets, groups: &[Vec<&Run>]) -> Vec<Column> {
-    let column = |(k, label): (usize, &String)| {
-        let target = |run: &Run| targets.values[run.instance].get(k).copied();
+    let symbol = plan.cost_symbol();
+    let column = |k: usize| {
+        let all = targets.label(k, symbol, 0..plan.instances.len());
+        let numbered = all.starts_with("target");
         let cell = |group: &Vec<&Run>| {
-            let shown = target(group[0])?;
+            let target = |run: &Run| targets.values[run.instance].get(k).copied();
             let reached = |run: &&&Run| target(run).is_some_and(|target| run.cost <= target);
             let share = format!("{}/{}", group.iter().filter(reached).count(), group.len());
-            let one = group.iter().all(|run| target(run) == Some(shown));
-            let numbered = label.starts_with("target");
-            Some(if one && numbered { format!("{share} ≤ {}", plain(shown)) } else { share })
+            let own = targets.label(k, "", group.iter().map(|run| run.instance));
+            let own = own.trim_start();
+            if numbered && !own.starts_with("target") { format!("{share} {own}") } else { share }
         };
-        let cells: Vec<String> = groups.iter().map(|g| cell(g).unwrap_or_default()).collect();
-        let name = if label.starts_with("target") {
-            format!("{}, {label}", plan.cost_symbol())
-        } else {
-            label.clone()
-        };
+        let cells: Vec<String> = groups.iter().map(cell).collect();
+        let name = if numbered { format!("{symbol}, {all}") } else { all };
         Column::new(name.into(), cells)
     };
-    targets.labels.iter().enumerate().map(column).collect()
+    (0..targets.count()).map(column).collect()
 }
 
 fn quantile_of(group: &[&Run], value: fn(&Run) -> f64, q: f64) -> f64 {

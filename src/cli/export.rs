@@ -88,17 +88,18 @@ impl Export {
 
 /// The command that reads what was written, with Python and one package.
 fn reader(format: SuiteFormat, out: &Path) -> String {
-    let out = out.display();
+    // As Python and then a shell reads it.
+    let out = format!("{:?}", out.display().to_string());
     let code = match format {
         SuiteFormat::Ioh => format!(
             "import iohinspector; manager = iohinspector.DataManager(); \
-             manager.add_folder('{out}'); print(manager.overview)"
+             manager.add_folder({out}); print(manager.overview)"
         ),
         SuiteFormat::Coco => format!(
             "import cocopp, glob; \
              cocopp.testbedsettings.suite_to_testbed['driftless'] = 'GECCOBBOBTestbed'; \
-             print(list(cocopp.pproc.DataSetList(glob.glob('{out}/*/*.info'))))"
+             print(list(cocopp.pproc.DataSetList(glob.glob({out} + '/*/*.info'))))"
         ),
     };
-    format!("python -c \"{code}\"")
+    format!("python -c {}", shell_words::quote(&code))
 }

@@ -1,5 +1,6 @@
 //! `driftless report`.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use clap::Args;
@@ -7,8 +8,10 @@ use clap::Args;
 use super::CliError;
 use super::results::{Results, ResultsFolder};
 use super::run::warn_of_budgets;
-use crate::analysis::tables::{Table, tables};
-use crate::analysis::{self, Run, best_run, convergence, csv, latex, markdown, render, summary};
+use crate::analysis::tables::{NAMES, Table, tables};
+use crate::analysis::{
+    self, Run, best_run, convergence, csv, latex, markdown, render, summary, targets,
+};
 use crate::experiment::Plan;
 use crate::output::{create_folder, write_file};
 use crate::plot;
@@ -30,10 +33,18 @@ impl Report {
     }
 }
 
-/// Writes every table as CSV and, unless it is a curve, as Markdown and LaTeX.
+/// Writes every table as CSV and, unless it is a curve, as Markdown and LaTeX; tables from before that these
+/// runs do not give are removed.
 fn write_tables(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError> {
     create_folder(folder)?;
-    for Table { name, caption, frame, is_curve } in tables(plan, runs)? {
+    let tables = tables(plan, runs, &targets(plan, runs))?;
+    for name in NAMES.iter().filter(|name| tables.iter().all(|table| table.name != **name)) {
+        for extension in ["csv", "md", "tex"] {
+            // What is not there need not be removed, and what cannot be removed cannot be written either.
+            let _ = std::fs::remove_file(folder.join(format!("{name}.{extension}")));
+        }
+    }
+    for Table { name, caption, frame, is_curve } in tables {
         write_file(&folder.join(format!("{name}.csv")), &csv(&frame)?)?;
         if !is_curve {
             let text = format!("{}\n{caption}\n", markdown(&frame)?);
@@ -45,19 +56,32 @@ fn write_tables(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError
     Ok(())
 }
 
+/// Most panels of a figure.
+const MOST_PANELS: usize = 24;
+/// Most instances whose best motion is told.
+const MOST_TOLD: usize = 24;
+
 /// Prints the summary of all stored runs of the plan and draws them.
 pub(super) fn report(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError> {
     if runs.len() < plan.runs.len() {
         say!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
     }
-    say!("{}", render(&summary(plan, runs)?)?);
+    say!("{}", render(&summary(plan, runs, &targets(plan, runs))?)?);
     warn_of_budgets(plan);
     let figures = folder.join("figures");
-    let curves = convergence(plan, runs);
-    plot::convergence(&curves, plan.cost_symbol()).save(&figures, "convergence")?;
-    for (i, instance) in plan.instances.iter().enumerate() {
-        let (Some(problem), Some(best)) =
-            (instance.reorientation(), best_run(runs.iter().filter(|run| run.instance == i)))
+    let groups: HashSet<&str> = plan.instances.iter().map(|i| i.group.as_str()).collect();
+    if groups.len() <= MOST_PANELS {
+        let curves = convergence(plan, runs);
+        plot::convergence(&curves, plan.cost_symbol()).save(&figures, "convergence")?;
+    } else {
+        note!("note: convergence of more than {MOST_PANELS} groups of instances is not drawn");
+    }
+    let mut by_instance = vec![Vec::new(); plan.instances.len()];
+    for run in runs {
+        by_instance[run.instance].push(run);
+    }
+    for (instance, runs) in plan.instances.iter().zip(by_instance).take(MOST_TOLD) {
+        let (Some(problem), Some(best)) = (instance.reorientation(), best_run(runs.into_iter()))
         else {
             continue;
         };
@@ -77,6 +101,9 @@ pub(super) fn report(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), Cli
             let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
             plot::write_motion_figures(&figures, &motion, problem.task())?;
         }
+    }
+    if plan.instances.len() > MOST_TOLD {
+        say!("… `driftless report` lists the best motions of all instances in tables/best.csv");
     }
     say!("results: {}, figures: {}", folder.display(), figures.display());
     let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::{EntrantTable, FunctionTable, Plan, RandomPoses, Targets, field, functions};
-use crate::input::{Document, Fraction, InputError, Positive, count};
+use crate::input::{Document, Fraction, InputError, Positive, count, non_empty};
 use crate::problem::{DEFAULTS as TASK_DEFAULTS, TrajectoryTable};
 use crate::task::{PoseTable, TaskTable};
 
@@ -25,7 +25,7 @@ pub struct ExperimentFile {
     pub seeds: NonZeroU64,
     /// What each run may spend.
     pub budget: BudgetTable,
-    /// Costs whose success rate the summary shows; by default they follow the best known costs.
+    /// Costs that runs are asked to reach; by default they follow the best known costs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub targets: Option<Spanned<Targets>>,
     /// The task that the sweep varies; none beside functions.
@@ -58,25 +58,25 @@ pub struct BudgetTable {
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct Sweep {
     /// `K_b`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub weight_base: Vec<Fraction>,
     /// The same limit for all joints \[°/s\].
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub rate_limit_deg_s: Vec<Positive>,
     /// The same limit for all joints \[°/s²\].
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub acceleration_limit_deg_s2: Vec<Positive>,
     /// The same limit for all joints \[°/s³\].
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub jerk_limit_deg_s3: Vec<Positive>,
     /// Free coefficients a joint.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub terms: Vec<Spanned<usize>>,
     /// Evaluations a run, instead of the budget's.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub budget: Vec<Evaluations>,
     /// Pairs of start and goal; what one leaves out is the task's.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub pose: Vec<PoseTable>,
     /// Pairs drawn at random instead.
     #[serde(skip_serializing_if = "Option::is_none")]

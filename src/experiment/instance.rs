@@ -19,7 +19,7 @@ pub struct Instance {
     pub subject: Subject,
     /// Evaluations that each run may spend, instead of the experiment's budget.
     pub budget: Option<NonZeroU64>,
-    /// Costs whose success rate the summary shows.
+    /// Costs that runs are asked to reach.
     pub targets: Vec<f64>,
 }
 

@@ -1,6 +1,6 @@
 //! An experiment spelt out: every instance, every run, every key.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::num::NonZeroU64;
 
 use serde::Serialize;
@@ -17,6 +17,9 @@ use crate::task::Task;
 
 /// Raised when a change makes the same run give another result.
 const RESULT_VERSION: u32 = 4;
+
+/// Most runs of an experiment; each takes some kilobytes until all are done.
+const MOST_RUNS: u64 = 1_000_000;
 
 /// An experiment spelt out.
 #[derive(Debug, Clone)]
@@ -82,6 +85,13 @@ impl Plan {
         }
         check_budgets(file, document)?;
         let field = file.optimiser.get_ref();
+        let seeds = field.iter().map(|table| table.seeds.unwrap_or(file.seeds).get()).sum::<u64>();
+        let count = seeds.saturating_mul(instances.len() as u64);
+        if count > MOST_RUNS {
+            let message = format!("found {count} runs, expected {MOST_RUNS} at most");
+            let help = "make several experiments of it".to_owned();
+            return Err(document.error_at(file.optimiser.span(), message, Some(help)));
+        }
         let plan = Self::of(&file.name, instances, field, file.seeds, file.budget.evaluations);
         let mut keys = HashSet::new();
         if let Some(twin) = plan.runs.iter().find(|run| !keys.insert(&run.key)) {
@@ -142,6 +152,21 @@ impl Plan {
         pairs.any(|(a, b)| a.instance == b.instance && a.budget != b.budget)
     }
 
+    /// For every instance the first one with the same problem: instances may differ in budget alone.
+    pub fn problems(&self) -> Vec<usize> {
+        let mut first = HashMap::new();
+        let same = |(i, instance): (usize, &Instance)| {
+            let identity = serde_json::to_string(&identity(instance)).unwrap_or_default();
+            *first.entry(identity).or_insert(i)
+        };
+        self.instances.iter().enumerate().map(same).collect()
+    }
+
+    /// The places of all runs by their keys.
+    pub fn places(&self) -> HashMap<&str, usize> {
+        self.runs.iter().enumerate().map(|(i, run)| (run.key.as_str(), i)).collect()
+    }
+
     /// The letter for costs: the paper's `J` where its task is among the instances.
     pub fn cost_symbol(&self) -> &'static str {
         if self.instances.iter().any(Instance::is_task) { "J" } else { "f" }
@@ -199,6 +224,26 @@ fn check_labels(
     Ok(())
 }
 
+/// Which problem an instance is.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Identity<'a> {
+    Task { task: &'a Task, terms: usize, accuracy: Accuracy, boxes: &'a Boxes },
+    Other { problem: &'a str, instance: &'a str },
+}
+
+fn identity(instance: &Instance) -> Identity<'_> {
+    match &instance.subject {
+        Subject::Task { problem, boxes } => Identity::Task {
+            task: problem.task(),
+            terms: problem.family().terms(),
+            accuracy: problem.accuracy(),
+            boxes,
+        },
+        Subject::Other { name, .. } => Identity::Other { problem: name, instance: &instance.label },
+    }
+}
+
 /// Everything that determines a run's result, as JSON.
 #[expect(clippy::expect_used, reason = "plain data has a JSON form")]
 fn recipe(instance: &Instance, settings: &Settings, seed: u64, budget: u64) -> String {
@@ -212,21 +257,7 @@ fn recipe(instance: &Instance, settings: &Settings, seed: u64, budget: u64) -> S
         seed: u64,
         evaluations: u64,
     }
-    #[derive(Serialize)]
-    #[serde(untagged)]
-    enum Identity<'a> {
-        Task { task: &'a Task, terms: usize, accuracy: Accuracy, boxes: &'a Boxes },
-        Other { problem: &'a str, instance: &'a str },
-    }
-    let subject = match &instance.subject {
-        Subject::Task { problem, boxes } => Identity::Task {
-            task: problem.task(),
-            terms: problem.family().terms(),
-            accuracy: problem.accuracy(),
-            boxes,
-        },
-        Subject::Other { name, .. } => Identity::Other { problem: name, instance: &instance.label },
-    };
+    let subject = identity(instance);
     let recipe = Recipe {
         version: RESULT_VERSION,
         format: FORMAT,

@@ -1,4 +1,4 @@
-//! Costs whose success rate the summary shows.
+//! Costs that runs are asked to reach.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -16,7 +16,7 @@ use crate::input::{Document, Finite, InputError, nearest};
 pub enum Targets {
     /// The same for all.
     All(Vec<Finite>),
-    /// By label; an instance that is left out has none.
+    /// By label; an instance that is left out keeps what follows from its best known cost.
     Each(BTreeMap<String, Vec<Finite>>),
 }
 
@@ -51,7 +51,9 @@ impl Targets {
                 Self::All(list) => Some(list),
                 Self::Each(each) => each.get(&instance.label),
             };
-            instance.targets = stated.into_iter().flatten().map(|target| target.0).collect();
+            if let Some(stated) = stated {
+                instance.targets = stated.iter().map(|target| target.0).collect();
+            }
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use polars::prelude::*;
 
-use crate::analysis::Run;
+use crate::analysis::{Run, least_found};
 use crate::experiment::{Instance, Plan};
 use crate::output::FileError;
 
@@ -110,11 +110,7 @@ impl Suite {
     /// The runs of a plan that are stored.
     pub fn new(plan: &Plan, runs: &[Run]) -> Result<Self, SuiteError> {
         let traces: Vec<Trace> = runs.iter().map(whole).collect();
-        let mut least = vec![f64::INFINITY; plan.instances.len()];
-        for (run, trace) in runs.iter().zip(&traces) {
-            least[run.instance] = least[run.instance].min(best(trace));
-        }
-        let (functions, places) = functions(plan, &least)?;
+        let (functions, places) = functions(plan, &least_found(plan, runs))?;
         let trial = |(run, trace): (&Run, Trace)| {
             let (function, instance) = places[run.instance];
             Trial { algorithm: run.optimiser, function, instance, seed: run.seed, trace }

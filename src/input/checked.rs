@@ -60,6 +60,13 @@ where
     })
 }
 
+/// A list with at least one entry.
+pub fn non_empty<'de, D: Deserializer<'de>, T: Deserialize<'de>>(d: D) -> Result<Vec<T>, D::Error> {
+    let list = Vec::deserialize(d)?;
+    let expected = "found an empty list, expected at least one entry";
+    if list.is_empty() { Err(D::Error::custom(expected)) } else { Ok(list) }
+}
+
 /// A number from 0 to 1.
 pub fn fraction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let value = f64::deserialize(deserializer)?;

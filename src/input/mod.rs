@@ -16,7 +16,7 @@ use toml::de::{DeTable, DeValue};
 
 pub use checked::{
     Finite, Fraction, PerJoint, Positive, count, count_from, finite, finite_array, fraction,
-    interval, non_negative, optional_count, positive, positive_interval, share,
+    interval, non_empty, non_negative, optional_count, positive, positive_interval, share,
 };
 
 /// A file that cannot be used, with the place in it where one is known.

@@ -233,3 +233,57 @@ fn read_only_disks_are_told_of_and_can_be_read() {
     assert_eq!(exits, ["exit 0", "exit 1", "exit 1", "exit 0"]);
     assert_eq!(results(&folder.path().join("after")), calm);
 }
+
+/// Nobody listens: the work is done all the same.
+#[test]
+fn notes_that_cannot_be_written_stop_nothing() {
+    let folder = Folder::new().with("brief.toml", EXPERIMENT);
+    let full = || fs::OpenOptions::new().write(true).open("/dev/full");
+    let Ok(full) = full() else { return println!("skipped: there is no /dev/full") };
+    let output = folder.command(&["run", "brief.toml", "--out", "out"]).stderr(full).output();
+    assert_eq!(output.unwrap().status.code(), Some(0));
+    assert_eq!(Store::existing(&folder.path().join("out")).keys().unwrap().len(), 48);
+}
+
+/// A damaged file is named; without it, and without any other of its three, the runs are done again.
+#[test]
+fn damaged_files_are_named_and_done_again() {
+    let (folder, calm) = undisturbed();
+    let out = folder.path().join("calm");
+    let key = Store::existing(&out).keys().unwrap().into_iter().min().unwrap();
+    for table in ["runs", "traces", "clocks"] {
+        let path = out.join(table).join(format!("{key}.parquet"));
+        let whole = fs::read(&path).unwrap();
+        fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+        let command = if table == "clocks" { "compact" } else { "report" };
+        let output = folder.run(&[command, "calm"]);
+        assert_eq!(output.status.code(), Some(1));
+        let told = stderr(&output).replace('│', " ");
+        let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(told.contains(&format!("{table}/{key}.parquet")), "{told}");
+        assert!(told.contains("without this file its runs are done again"), "{told}");
+        fs::remove_file(&path).unwrap();
+        let output = folder.run(&["run", "brief.toml", "--out", "calm"]);
+        assert!(
+            stderr(&output).contains("47 of 48 runs are stored already"),
+            "{}",
+            stderr(&output)
+        );
+        assert_eq!(results(&out), calm);
+    }
+    // What is no batch is none of ours, and a link that leads nowhere is no reason to wait.
+    fs::write(out.join("runs/notes.parquet"), "not a table").unwrap();
+    assert!(folder.run(&["status", "calm"]).status.success());
+}
+
+/// Another experiment's folder is left as it is.
+#[test]
+fn a_folder_belongs_to_one_experiment() {
+    let (folder, _) = undisturbed();
+    let kept = fs::read(folder.path().join("calm/experiment.toml")).unwrap();
+    let folder = folder.with("other.toml", EXPERIMENT.replace("'brief'", "'other'"));
+    let output = folder.run(&["run", "other.toml", "--out", "calm"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("`brief`"), "{}", stderr(&output));
+    assert_eq!(fs::read(folder.path().join("calm/experiment.toml")).unwrap(), kept);
+}

@@ -12,8 +12,8 @@ DIFFERENCES = [10 ** (2 - i / 5) for i in range(51)]
 
 
 def read(path):
-    return pl.read_csv(path, schema_overrides={"instance": pl.String}).with_columns(
-        pl.col("instance").fill_null("")
+    return pl.read_csv(path, schema_overrides={"instance": pl.String, "group": pl.String}).with_columns(
+        pl.col("^instance|group$").fill_null("")
     )
 
 
@@ -28,7 +28,7 @@ def compare(folder, table, optima, data_sets, tally):
     for row in read(folder / "fixed-target.csv").iter_rows(named=True):
         compare_row(row, costs, table, optima, data_sets, tally)
     for row in read(folder / "running-time-distribution.csv").iter_rows(named=True):
-        group, optimiser, evaluations = row["instance"], row["optimiser"], row["evaluations"]
+        group, optimiser, evaluations = row["group"], row["optimiser"], row["evaluations"]
         if group == "all":
             mine = [(g, trials) for (g, o), trials in table.items() if o == optimiser]
         else:
@@ -44,7 +44,7 @@ def compare(folder, table, optima, data_sets, tally):
 
 
 def compare_row(row, costs, table, optima, data_sets, tally):
-    group, optimiser, ert = row["instance"], row["optimiser"], float(row["ERT"])
+    group, optimiser, ert = row["group"], row["optimiser"], float(row["ERT"])
     cost, trials = costs[group, row["target"]], table[group, optimiser]
     where = f"{group} {optimiser} at {cost}"
     tally["report: expected running times"].compare(ert, expected_running_time(trials, cost), where)

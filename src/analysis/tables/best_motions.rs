@@ -57,13 +57,14 @@ const SAME_DURATION: f64 = 1e-6;
 /// An experiment has one robot, so there is no need to compare robots.
 fn same_but_for_weight(a: &Reorientation, b: &Reorientation) -> bool {
     let (own, other) = (a.task(), b.task());
-    own.start == other.start
+    own.base_weight != other.base_weight
+        && own.start == other.start
         && own.goal == other.goal
         && own.limits == other.limits
         && a.family().terms() == b.family().terms()
 }
 
-/// Which best motions no other of the same task but for the weight beats in residual and duration; none
+/// Which best motions none of another weight of the same task but for the weight beats in residual and duration; none
 /// unless the weight varies.
 pub(super) fn pareto(field: &Field<'_>) -> PolarsResult<Option<Table>> {
     let tasks = best(field)

@@ -58,7 +58,7 @@ pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
         }
     }
     let frame = df!(
-        "instance" => columns.0,
+        "group" => columns.0,
         "optimiser" => columns.1,
         "evaluations" => columns.2,
         "share of runs" => columns.3,

@@ -12,7 +12,7 @@ pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
     let quartiles: Vec<_> = groups.iter().map(|g| quartiles(g.iter().map(first))).collect();
     let kept = |group: &[&Run]| group.iter().filter(|run| run.first_feasible.is_some()).count();
     let frame = df!(
-        "instance" => groups.iter().map(|g| field.labels(g)[1]).collect::<Vec<_>>(),
+        "group" => groups.iter().map(|g| field.labels(g)[1]).collect::<Vec<_>>(),
         "optimiser" => groups.iter().map(|g| field.labels(g)[0]).collect::<Vec<_>>(),
         "runs" => groups.iter().map(|g| g.len() as u64).collect::<Vec<_>>(),
         "feasible" => groups.iter().map(|g| kept(g) as u64).collect::<Vec<_>>(),

@@ -13,7 +13,7 @@ use polars::prelude::*;
 
 use super::runs::groups;
 use super::statistics::{Bootstrap, quantile};
-use super::{Run, Targets, summary, targets};
+use super::{Run, Targets, summary};
 use crate::experiment::Plan;
 use crate::oracle::Rng;
 
@@ -46,14 +46,32 @@ struct Field<'a> {
     runs: &'a [Run],
     /// The runs by optimiser and group of instances.
     groups: Vec<Vec<&'a Run>>,
-    targets: Targets,
+    targets: &'a Targets,
 }
 
+/// The names that tables may have.
+pub const NAMES: [&str; 14] = [
+    "summary",
+    "best",
+    "pareto",
+    "targets",
+    "fixed-target",
+    "fixed-budget",
+    "first-feasible",
+    "friedman",
+    "ranks",
+    "pairs",
+    "blocks",
+    "running-time-distribution",
+    "performance-profiles",
+    "data-profiles",
+];
+
 /// Every table that the runs of a plan give.
-pub fn tables(plan: &Plan, runs: &[Run]) -> PolarsResult<Vec<Table>> {
-    let field = Field { plan, runs, groups: groups(plan, runs), targets: targets(plan, runs) };
+pub fn tables(plan: &Plan, runs: &[Run], targets: &Targets) -> PolarsResult<Vec<Table>> {
+    let field = Field { plan, runs, groups: groups(plan, runs), targets };
     let caption = "Certified best costs over all runs; a failed run counts as infinite.";
-    let mut tables = vec![Table::new("summary", caption, summary(plan, runs)?)];
+    let mut tables = vec![Table::new("summary", caption, summary(plan, runs, targets)?)];
     tables.push(best_motions::table(&field)?);
     tables.extend(best_motions::pareto(&field)?);
     tables.push(fixed_target::targets(&field)?);
@@ -64,9 +82,15 @@ pub fn tables(plan: &Plan, runs: &[Run]) -> PolarsResult<Vec<Table>> {
         tables.push(ranks::friedman_table(&field, &blocks)?);
         tables.push(ranks::table(&field, &blocks)?);
         tables.push(pairs::table(&field, &blocks)?);
+        tables.push(ranks::blocks_table(&field, &blocks)?);
     }
     tables.push(distribution::table(&field)?);
     tables.extend(profiles::tables(&field)?);
+    let (stored, planned) = (runs.len(), plan.runs.len());
+    if stored < planned {
+        let note = format!(" Only {stored} of {planned} runs are stored so far.");
+        tables.iter_mut().for_each(|table| table.caption += &note);
+    }
     Ok(tables)
 }
 
@@ -74,6 +98,19 @@ impl Field<'_> {
     /// The label of an optimiser.
     fn optimiser(&self, index: usize) -> &str {
         &self.plan.optimisers[index].label
+    }
+
+    /// What to call the k-th target of all instances.
+    fn target_label(&self, k: usize) -> String {
+        let all = 0..self.plan.instances.len();
+        self.targets.label(k, self.plan.cost_symbol(), all)
+    }
+
+    /// What to call the k-th target of a group.
+    fn target_label_of(&self, k: usize, group: &str) -> String {
+        let all = self.plan.instances.iter().enumerate();
+        let own = all.filter(|(_, instance)| instance.group == group).map(|(i, _)| i);
+        self.targets.label(k, self.plan.cost_symbol(), own)
     }
 
     /// The label of the optimiser and of the group that some runs share.
@@ -88,10 +125,10 @@ const LEVEL: f64 = 0.95;
 /// Level of the tests.
 const ALPHA: f64 = 0.05;
 
-/// The bootstrap's interval of a statistic: 1000 resamples; of a sample of more than 200, as many as
-/// make 200,000 draws, 100 at least.
+/// The bootstrap's interval of a statistic: 1000 resamples; of a sample of more than 1000, as many as
+/// make a million draws, 400 at least.
 fn interval<T: Copy>(sample: &[T], statistic: impl Fn(&[T]) -> f64) -> [f64; 2] {
-    let resamples = (200_000 / sample.len().max(1)).clamp(100, 1000);
+    let resamples = (1_000_000 / sample.len().max(1)).clamp(400, 1000);
     let mut rng = Rng::new(1);
     let draw = |count| rng.index(count);
     Bootstrap { level: LEVEL, resamples }.interval(sample, statistic, draw)
@@ -105,8 +142,7 @@ fn quartiles(values: impl Iterator<Item = f64>) -> [f64; 3] {
 }
 
 /// The median of unsorted values.
-fn median(values: &[f64]) -> f64 {
-    let mut values = values.to_vec();
+fn median(mut values: Vec<f64>) -> f64 {
     let middle = values.len() / 2;
     if values.is_empty() {
         return f64::NAN;

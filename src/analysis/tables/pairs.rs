@@ -13,23 +13,34 @@ pub(super) struct Pair {
     test: Wilcoxon,
     /// Holm's p-value over all pairs.
     pub(super) p_holm: f64,
+    /// Vargha and Delaney's A12, in the mean over the instances.
+    effect: f64,
 }
 
-/// All pairs.
-pub(super) fn pairs(field: &Field<'_>, blocks: &Blocks) -> Vec<Pair> {
-    let count = field.plan.optimisers.len();
-    let column = |i: usize| blocks.costs.iter().map(|row| row[i]).collect::<Vec<f64>>();
+/// All pairs, from the costs of each block and from all runs of each instance, by optimiser.
+pub(super) fn pairs(blocks: &[Vec<f64>], instances: &[&[Vec<(u64, f64)>]]) -> Vec<Pair> {
+    let count = blocks.first().map_or(0, Vec::len);
+    let column = |i: usize| blocks.iter().map(|row| row[i]).collect::<Vec<f64>>();
     let places = (0..count).flat_map(|first| (first + 1..count).map(move |second| (first, second)));
     let tests: Vec<_> = places.map(|(a, b)| (a, b, wilcoxon(&column(a), &column(b)))).collect();
     let adjusted = holm(&tests.iter().map(|(_, _, test)| test.p).collect::<Vec<_>>());
-    let pair = |((first, second, test), p_holm)| Pair { first, second, test, p_holm };
+    let pair = |((first, second, test), p_holm)| {
+        let effect = effect(instances, first, second);
+        Pair { first, second, test, p_holm, effect }
+    };
     tests.into_iter().zip(adjusted).map(pair).collect()
 }
 
+fn effect(instances: &[&[Vec<(u64, f64)>]], first: usize, second: usize) -> f64 {
+    let costs = |cell: &[(u64, f64)]| cell.iter().map(|run| run.1).collect::<Vec<f64>>();
+    let effects =
+        instances.iter().map(|cells| vargha_delaney(&costs(&cells[first]), &costs(&cells[second])));
+    effects.sum::<f64>() / instances.len() as f64
+}
+
 /// One line a pair.
-pub(super) fn table(field: &Field<'_>, blocks: &Blocks) -> PolarsResult<Table> {
-    let pairs = pairs(field, blocks);
-    let effects = effects(field);
+pub(super) fn table(field: &Field<'_>, blocks: &Blocks<'_>) -> PolarsResult<Table> {
+    let pairs = &blocks.pairs;
     let frame = df!(
         "first" => pairs.iter().map(|p| field.optimiser(p.first)).collect::<Vec<_>>(),
         "second" => pairs.iter().map(|p| field.optimiser(p.second)).collect::<Vec<_>>(),
@@ -38,8 +49,9 @@ pub(super) fn table(field: &Field<'_>, blocks: &Blocks) -> PolarsResult<Table> {
         "rank sum first lower" => pairs.iter().map(|p| p.test.first_lower).collect::<Vec<_>>(),
         "rank sum second lower" => pairs.iter().map(|p| p.test.second_lower).collect::<Vec<_>>(),
         "p" => pairs.iter().map(|p| p.test.p).collect::<Vec<_>>(),
+        "exact" => pairs.iter().map(|p| if p.test.exact { "yes" } else { "no" }).collect::<Vec<_>>(),
         "p Holm" => pairs.iter().map(|p| p.p_holm).collect::<Vec<_>>(),
-        "A12" => pairs.iter().map(|p| effects[p.first][p.second]).collect::<Vec<_>>(),
+        "A12" => pairs.iter().map(|p| p.effect).collect::<Vec<_>>(),
     )?;
     let caption = format!(
         "Wilcoxon's signed-rank test of the final certified costs, two-sided, with Holm's correction over all pairs; \
@@ -48,17 +60,4 @@ pub(super) fn table(field: &Field<'_>, blocks: &Blocks) -> PolarsResult<Table> {
         blocks.told()
     );
     Ok(Table::new("pairs", caption, frame))
-}
-
-/// Vargha and Delaney's A12 of every two optimisers, in the mean over the instances that both have tried.
-fn effects(field: &Field<'_>) -> Vec<Vec<f64>> {
-    let count = field.plan.optimisers.len();
-    let mut costs = vec![vec![Vec::new(); count]; field.plan.instances.len()];
-    field.runs.iter().for_each(|run| costs[run.instance][run.optimiser].push(run.cost));
-    let mean = |a: usize, b: usize| {
-        let both = costs.iter().filter(|row| !row[a].is_empty() && !row[b].is_empty());
-        let all: Vec<f64> = both.map(|row| vargha_delaney(&row[a], &row[b])).collect();
-        all.iter().sum::<f64>() / all.len() as f64
-    };
-    (0..count).map(|a| (0..count).map(|b| if a < b { mean(a, b) } else { 0.5 }).collect()).collect()
 }

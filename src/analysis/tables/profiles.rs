@@ -11,10 +11,13 @@ use crate::analysis::statistics::{Step, data_profiles, performance_profiles};
 /// optimiser has not tried yet are left out.
 pub(super) fn tables(field: &Field<'_>) -> PolarsResult<[Table; 2]> {
     let (mut performance, mut data) = (Curves::default(), Curves::default());
-    for (k, target) in field.targets.labels.iter().enumerate() {
+    let mut most = 0;
+    for k in 0..field.targets.count() {
+        let target = &field.target_label(k);
         let (times, dimensions) = problems(field, k);
-        performance.add(field, target, performance_profiles(&times));
-        data.add(field, target, data_profiles(&times, &dimensions));
+        most = most.max(times.len());
+        performance.add(field, target, performance_profiles(&times), 1.0);
+        data.add(field, target, data_profiles(&times, &dimensions), 0.0);
     }
     let pool: Vec<&str> = field.plan.optimisers.iter().map(|o| o.label.as_str()).collect();
     let pool = pool.join(", ");
@@ -22,16 +25,17 @@ pub(super) fn tables(field: &Field<'_>) -> PolarsResult<[Table; 2]> {
         Table::curve(
             "performance-profiles",
             format!(
-                "Share of problems (instances with seeds) whose target is reached within a multiple of the fewest \
-                 evaluations that any of these needed: {pool}."
+                "Share of {most} problems, each an instance with a seed that all optimisers tried, whose target is reached \
+                 within a multiple of the fewest evaluations that any of these needed: {pool}."
             ),
             performance.into_frame("ratio")?,
         ),
         Table::curve(
             "data-profiles",
             format!(
-                "Share of problems (instances with seeds) whose target is reached within so many simplex gradients, \
-                 n + 1 evaluations each, by each of {pool}."
+                "Share of {most} problems, each an instance with a seed that all optimisers tried, whose target is reached \
+                 within so many simplex gradients, n + 1 evaluations each, by each of {pool}. On the task n is the number of \
+                 the paper's variables, whatever the formulation."
             ),
             data.into_frame("simplex gradients")?,
         ),
@@ -63,9 +67,11 @@ struct Curves {
 }
 
 impl Curves {
-    fn add(&mut self, field: &Field<'_>, target: &str, profiles: Vec<Vec<Step>>) {
+    /// Every curve begins with a share of 0, be it where it ends as well.
+    fn add(&mut self, field: &Field<'_>, target: &str, profiles: Vec<Vec<Step>>, first: f64) {
+        let zero = Step { time: first, share: 0.0 };
         for (optimiser, steps) in profiles.into_iter().enumerate() {
-            for step in steps {
+            for step in std::iter::once(zero).chain(steps) {
                 self.targets.push(target.to_owned());
                 self.optimisers.push(field.optimiser(optimiser).to_owned());
                 self.steps.push(step);

@@ -91,7 +91,7 @@ impl Store {
 
     pub(super) fn has_vanished(&self, error: &StoreError, batch: &str) -> bool {
         let is_gone = |table: &&str| fs::symlink_metadata(self.path(table, batch)).is_err();
-        matches!(error, StoreError::Damaged { .. }) && TABLES.iter().any(|table| is_gone(&table))
+        matches!(error, StoreError::Damaged { .. }) && TABLES.iter().any(is_gone)
     }
 
     /// The names of all batches. A folder that changes while it is listed may show neither what is
