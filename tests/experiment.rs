@@ -244,7 +244,8 @@ fn every_run_leaves_a_record_whatever_the_problem_does() {
             assert_eq!(counted, problem.calls.load(Ordering::Relaxed), "{mood:?}, {budget}");
             assert_eq!(run(&plan, &store), 0, "done again");
             let stored = analysis::load(&plan, &store).unwrap();
-            let summary = analysis::summary(&plan, &stored).unwrap();
+            let targets = analysis::targets(&plan, &stored);
+            let summary = analysis::summary(&plan, &stored, &targets).unwrap();
             assert_eq!(summary.height(), plan.optimisers.len());
         }
     }

@@ -89,7 +89,9 @@ pub fn tables(plan: &Plan, runs: &[Run], targets: &Targets) -> PolarsResult<Vec<
     let (stored, planned) = (runs.len(), plan.runs.len());
     if stored < planned {
         let note = format!(" Only {stored} of {planned} runs are stored so far.");
-        tables.iter_mut().for_each(|table| table.caption += &note);
+        for table in &mut tables {
+            table.caption += &note;
+        }
     }
     Ok(tables)
 }
