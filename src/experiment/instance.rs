@@ -4,6 +4,7 @@ use std::fmt;
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
+use super::caught::caught;
 use crate::problem::{
     Assessment, BestKnown, Boxes, Formulated, Formulation, Problem, Reorientation,
 };
@@ -87,11 +88,11 @@ impl Instance {
     }
 
     /// The cost in the middle of the box: on the task, that of the motion without bumps, as fast as the limits
-    /// allow.
+    /// allow. No number where the problem panics there.
     pub fn centre_cost(&self) -> f64 {
         let problem = self.problem(Formulation::TimeFree);
         let centre: Vec<f64> = problem.bounds().iter().map(|[a, b]| a + 0.5 * (b - a)).collect();
-        problem.evaluate(&centre).cost
+        caught(|| problem.evaluate(&centre).cost).unwrap_or(f64::NAN)
     }
 
     /// The number of variables, whatever the optimiser's formulation, so that formulations of one task
