@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use driftless::analysis;
 use driftless::experiment::{self, Instance, Plan, Progress, Record, RunSpec, Store};
-use driftless::export::{Suite, SuiteError, SuiteFormat, Trial, write_suite};
+use driftless::export::{ExportedRun, Suite, SuiteError, SuiteFormat, write_suite};
 use driftless::optimiser::Settings;
 use driftless::oracle::Watch;
 use driftless::problem::{Analytic, Bounds, Evaluation, Problem, TestFunction};
@@ -99,7 +99,7 @@ fn every_run_is_a_trial_from_its_first_to_its_last_evaluation() {
         }
     }
     assert!(late > 0, "no run began with a cost that is not finite");
-    let panicked = |trial: &&Trial| trial.algorithm == 0 && trial.evaluations() < 20;
+    let panicked = |trial: &&ExportedRun| trial.algorithm == 0 && trial.evaluations() < 20;
     assert!(suite.trials.iter().filter(panicked).count() > 8);
 }
 
@@ -113,7 +113,7 @@ fn optima_are_known_or_least_found() {
     let [mixed, none, sphere] = &suite.functions[..] else { panic!() };
     for (i, objective) in mixed.instances.iter().enumerate() {
         let trials = suite.trials.iter().filter(|t| t.function == 0 && t.instance == i);
-        let least = trials.map(Trial::best).fold(f64::INFINITY, f64::min);
+        let least = trials.map(ExportedRun::best).fold(f64::INFINITY, f64::min);
         assert!(least > 3.0 && !objective.is_known);
         assert_eq!(objective.optimum, least);
     }

@@ -1,7 +1,7 @@
 //! Best cost against evaluations, over the seeds.
 
 use super::runs::{Run, groups};
-use super::statistics::quantile;
+use super::statistics::quartiles;
 use crate::experiment::Plan;
 
 /// Quartiles of the best cost so far over the seeds and the instances of a group.
@@ -34,11 +34,9 @@ fn curve(plan: &Plan, group: &[&Run]) -> Curve {
     let mut evaluations: Vec<f64> =
         (0..POINTS).map(|i| (last * i as f64 / (POINTS - 1) as f64).exp().round()).collect();
     evaluations.dedup();
-    let quartiles = evaluations.iter().map(|&place| {
-        let mut costs: Vec<f64> = group.iter().map(|run| run.best_at(place as u64)).collect();
-        costs.sort_by(f64::total_cmp);
-        [0.25, 0.5, 0.75].map(|q| quantile(&costs, q))
-    });
+    let quartiles = evaluations
+        .iter()
+        .map(|&place| quartiles(group.iter().map(|run| run.best_at(place as u64))));
     Curve {
         optimiser: plan.optimisers[group[0].optimiser].label.clone(),
         group: plan.instances[group[0].instance].group.clone(),

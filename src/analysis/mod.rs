@@ -12,7 +12,7 @@ mod ties;
 
 pub use convergence::{Curve, convergence};
 pub use format::{csv, latex, markdown, render};
-pub use runs::{Run, Step, best_run, load};
+pub use runs::{Improvement, Run, best_run, load};
 pub use standing::{Failure, Standing, Tally, standing};
 pub use summary::summary;
 pub use targets::{Targets, least_found, targets};

@@ -1,5 +1,7 @@
 //! Stored runs.
 
+use std::collections::HashMap;
+
 use polars::prelude::*;
 
 use crate::experiment::{Plan, RunSpec, Status, Store, StoreError};
@@ -32,7 +34,7 @@ pub struct Run {
     /// Bump coefficients of the best motion, joint by joint; none where there is no motion.
     pub coefficients: Vec<f64>,
     /// Improvements of the best cost and the last evaluation, in order; none where nothing was found.
-    pub trace: Vec<Step>,
+    pub trace: Vec<Improvement>,
 }
 
 impl Run {
@@ -51,7 +53,7 @@ impl Run {
 
 /// A row of a run's trace: an improvement, or the last evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub struct Improvement {
     /// Which evaluation, counted from one.
     pub evaluation: u64,
     /// Best cost so far, as the search evaluated it.
@@ -92,7 +94,7 @@ pub fn load(plan: &Plan, store: &Store) -> Result<Vec<Run>, StoreError> {
         for ((key, evaluation), cost) in keys.iter().zip(evaluations.iter()).zip(costs.iter()) {
             let run = key.and_then(|key| planned.get(key)).and_then(|&i| runs[i].as_mut());
             if let (Some(run), Some(evaluation), Some(cost)) = (run, evaluation, cost) {
-                run.trace.push(Step { evaluation, cost });
+                run.trace.push(Improvement { evaluation, cost });
             }
         }
         Ok(())
@@ -175,14 +177,15 @@ pub fn best_run<'a>(runs: impl Iterator<Item = &'a Run>) -> Option<&'a Run> {
 
 /// Groups runs by optimiser and the instances' groups, in the order of their first row.
 pub(super) fn groups<'a>(plan: &Plan, runs: &'a [Run]) -> Vec<Vec<&'a Run>> {
-    let of = |run: &Run| (run.optimiser, plan.instances[run.instance].group.as_str());
+    let mut places = HashMap::new();
     let mut groups: Vec<Vec<&Run>> = Vec::new();
     for run in runs {
-        let fits = |group: &&mut Vec<&Run>| of(group[0]) == of(run);
-        match groups.iter_mut().find(fits) {
-            Some(group) => group.push(run),
-            None => groups.push(vec![run]),
+        let of = (run.optimiser, plan.instances[run.instance].group.as_str());
+        let place = *places.entry(of).or_insert(groups.len());
+        if place == groups.len() {
+            groups.push(Vec::new());
         }
+        groups[place].push(run);
     }
     groups
 }

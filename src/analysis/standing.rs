@@ -10,7 +10,7 @@ pub struct Standing {
     /// Stored runs that failed.
     pub failures: Vec<Failure>,
     /// Stored runs that do not belong to the plan.
-    pub strangers: usize,
+    pub others: usize,
 }
 
 /// How many runs of an optimiser there are.
@@ -57,7 +57,7 @@ pub fn standing(plan: &Plan, store: &Store) -> Result<Standing, StoreError> {
     let planned = plan.places();
     let mut tallies = vec![Tally::default(); plan.optimisers.len()];
     plan.runs.iter().for_each(|run| tallies[run.optimiser].planned += 1);
-    let (mut failures, mut strangers) = (Vec::new(), 0);
+    let (mut failures, mut others) = (Vec::new(), 0);
     store.visit(
         "runs",
         &["key", "status", "message"],
@@ -67,7 +67,7 @@ pub fn standing(plan: &Plan, store: &Store) -> Result<Standing, StoreError> {
             let (keys, statuses, messages) = (text("key")?, text("status")?, text("message")?);
             for i in 0..frame.height() {
                 let Some(&run) = keys.get(i).and_then(|key| planned.get(key)) else {
-                    strangers += 1;
+                    others += 1;
                     continue;
                 };
                 let tally = &mut tallies[plan.runs[run].optimiser];
@@ -83,5 +83,5 @@ pub fn standing(plan: &Plan, store: &Store) -> Result<Standing, StoreError> {
         },
     )?;
     failures.sort_by_key(|failure| failure.run);
-    Ok(Standing { tallies, failures, strangers })
+    Ok(Standing { tallies, failures, others })
 }

@@ -98,7 +98,7 @@ fn json<'a>(results: &'a Results, standing: &'a Standing, batches: usize) -> Sta
     StatusJson {
         experiment: &plan.name,
         all: standing.tallies.iter().copied().sum::<Tally>().into(),
-        others: standing.strangers,
+        others: standing.others,
         batches,
         optimisers: standing.tallies.iter().enumerate().map(entrant).collect(),
         failures: standing.failures.iter().map(failure).collect(),
@@ -137,8 +137,8 @@ fn tell(results: &Results, standing: &Standing, batches: usize) -> Result<(), Cl
     if standing.failures.len() > MOST_SHOWN {
         say!("… and {} more failed; --json lists all", standing.failures.len() - MOST_SHOWN);
     }
-    if standing.strangers > 0 {
-        say!("{} other runs are stored: of another version of the experiment", standing.strangers);
+    if standing.others > 0 {
+        say!("{} other runs are stored: of another version of the experiment", standing.others);
     }
     if all.missing() > 0 {
         say!("what is missing: {}", command(&results.folder));

@@ -6,7 +6,7 @@ use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::{EntrantTable, FunctionTable, Plan, RandomPoses, Targets, field, functions};
+use super::{EntrantTable, FunctionTable, Plan, RandomPoses, TargetTable, field, functions};
 use crate::input::{Document, Fraction, InputError, Positive, count, non_empty};
 use crate::problem::{DEFAULTS as TASK_DEFAULTS, TrajectoryTable};
 use crate::task::{PoseTable, TaskTable};
@@ -27,7 +27,7 @@ pub struct ExperimentFile {
     pub budget: BudgetTable,
     /// Costs that runs are asked to reach; by default they follow the best known costs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub targets: Option<Spanned<Targets>>,
+    pub targets: Option<Spanned<TargetTable>>,
     /// The task that the sweep varies; none beside functions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub task: Option<TaskTable>,
@@ -135,7 +135,7 @@ impl ExperimentFile {
     /// The same file with the targets that the plan has, wherever they came from.
     #[must_use]
     pub fn with_targets(self, plan: &Plan) -> Self {
-        Self { targets: Some(Spanned::new(0..0, Targets::of(&plan.instances))), ..self }
+        Self { targets: Some(Spanned::new(0..0, TargetTable::of(&plan.instances))), ..self }
     }
 
     /// The experiment that runs when none is named.

@@ -26,4 +26,4 @@ pub use record::{Record, Status};
 pub use runner::{Progress, RunError, run};
 pub use shard::{Shard, ShardChoice, ShardError};
 pub use store::{Compaction, Store, StoreError};
-pub use targets::Targets;
+pub use targets::TargetTable;

@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::field::entrants;
 use super::record::FORMAT;
-use super::{EntrantTable, ExperimentFile, Instance, Subject, Targets, sweep};
+use super::{EntrantTable, ExperimentFile, Instance, Subject, TargetTable, sweep};
 use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::optimiser::Settings;
@@ -81,7 +81,7 @@ impl Plan {
             _ => Vec::new(),
         };
         if let Some(targets) = &file.targets {
-            Targets::give(targets, &mut instances, document)?;
+            TargetTable::give(targets, &mut instances, document)?;
         }
         check_budgets(file, document)?;
         let field = file.optimiser.get_ref();

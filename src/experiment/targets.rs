@@ -13,14 +13,14 @@ use crate::input::{Document, Finite, InputError, nearest};
 /// Targets as a file has them: the same for all instances, or by the instance's label.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Targets {
+pub enum TargetTable {
     /// The same for all.
     All(Vec<Finite>),
     /// By label; an instance that is left out keeps what follows from its best known cost.
     Each(BTreeMap<String, Vec<Finite>>),
 }
 
-impl Targets {
+impl TargetTable {
     /// Those of the instances.
     pub(super) fn of(instances: &[Instance]) -> Self {
         let list = |instance: &Instance| instance.targets.iter().copied().map(Finite).collect();
@@ -59,30 +59,30 @@ impl Targets {
     }
 }
 
-impl<'de> Deserialize<'de> for Targets {
+impl<'de> Deserialize<'de> for TargetTable {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct ListOrTable;
         impl<'de> Visitor<'de> for ListOrTable {
-            type Value = Targets;
+            type Value = TargetTable;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a list of numbers, or a table of such lists by instance")
             }
 
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Targets, A::Error> {
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<TargetTable, A::Error> {
                 let mut targets = Vec::new();
                 while let Some(target) = list.next_element()? {
                     targets.push(target);
                 }
-                Ok(Targets::All(targets))
+                Ok(TargetTable::All(targets))
             }
 
-            fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> Result<Targets, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> Result<TargetTable, A::Error> {
                 let mut targets = BTreeMap::new();
                 while let Some((label, list)) = table.next_entry()? {
                     targets.insert(label, list);
                 }
-                Ok(Targets::Each(targets))
+                Ok(TargetTable::Each(targets))
             }
         }
         deserializer.deserialize_any(ListOrTable)

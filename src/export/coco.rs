@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::suite::{Algorithm, Function, SUITE, Suite, SuiteError, Trial};
+use super::suite::{Algorithm, ExportedRun, Function, SUITE, Suite, SuiteError};
 use super::write_plain;
 use crate::output::create_folder;
 
@@ -95,7 +95,7 @@ struct Row {
 }
 
 /// A run's trace.
-fn trace(suite: &Suite, trial: &Trial) -> Vec<Row> {
+fn trace(suite: &Suite, trial: &ExportedRun) -> Vec<Row> {
     let optimum = suite.objective(trial).optimum;
     // Without a finite cost there may be no optimum either.
     let finite = |x: f64| if x.is_finite() { x.min(NOTHING) } else { NOTHING };

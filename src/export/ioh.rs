@@ -10,7 +10,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::suite::{Function, SUITE, Suite, SuiteError, Trial};
+use super::suite::{ExportedRun, Function, SUITE, Suite, SuiteError};
 use super::write_plain;
 use crate::output::create_folder;
 
@@ -68,7 +68,7 @@ fn experiment_attributes(suite: &Suite, function: &Function) -> Vec<Value> {
 }
 
 /// One run; a cost that is not finite becomes null.
-fn run(suite: &Suite, trial: &Trial) -> Value {
+fn run(suite: &Suite, trial: &ExportedRun) -> Value {
     let best = trial.best();
     let found = trial.trace.iter().find(|(_, cost)| *cost == best);
     json!({
@@ -81,7 +81,7 @@ fn run(suite: &Suite, trial: &Trial) -> Value {
 }
 
 /// The traces, with all digits; a cost that is not finite yet is `inf`.
-fn table(trials: &[&Trial]) -> String {
+fn table(trials: &[&ExportedRun]) -> String {
     let mut text = String::new();
     for trial in trials {
         text.push_str(&COLUMNS.join(" "));

@@ -20,7 +20,7 @@ use crate::problem::Motion;
 #[cfg(feature = "harness")]
 pub use motions::write_motions;
 #[cfg(feature = "harness")]
-pub use suite::{Algorithm, Function, Objective, Suite, SuiteError, Trial};
+pub use suite::{Algorithm, ExportedRun, Function, Objective, Suite, SuiteError};
 
 /// Intervals between the samples of an exported motion.
 pub const INTERVALS: usize = 500;

@@ -25,7 +25,7 @@ pub struct Suite {
     /// One each group of instances; its number in the files is its place, counted from one.
     pub functions: Vec<Function>,
     /// The stored runs, in the plan's order.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<ExportedRun>,
 }
 
 /// One optimiser of the field.
@@ -68,7 +68,7 @@ pub struct Objective {
 
 /// One stored run, as the search evaluated its costs.
 #[derive(Debug, Clone)]
-pub struct Trial {
+pub struct ExportedRun {
     /// Place of the algorithm.
     pub algorithm: usize,
     /// Place of the function.
@@ -104,7 +104,7 @@ pub enum SuiteError {
 
 /// The trials of each algorithm on each function, by their dimension, with seeds of one instance
 /// together.
-pub(super) type Cells<'a> = BTreeMap<(usize, usize), BTreeMap<u16, Vec<&'a Trial>>>;
+pub(super) type Cells<'a> = BTreeMap<(usize, usize), BTreeMap<u16, Vec<&'a ExportedRun>>>;
 
 impl Suite {
     /// The runs of a plan that are stored.
@@ -113,7 +113,7 @@ impl Suite {
         let (functions, places) = functions(plan, &least_found(plan, runs))?;
         let trial = |(run, trace): (&Run, Trace)| {
             let (function, instance) = places[run.instance];
-            Trial { algorithm: run.optimiser, function, instance, seed: run.seed, trace }
+            ExportedRun { algorithm: run.optimiser, function, instance, seed: run.seed, trace }
         };
         Ok(Self {
             name: plan.name.clone(),
@@ -126,7 +126,7 @@ impl Suite {
     }
 
     /// The instance that a trial ran on.
-    pub fn objective(&self, trial: &Trial) -> &Objective {
+    pub fn objective(&self, trial: &ExportedRun) -> &Objective {
         &self.functions[trial.function].instances[trial.instance]
     }
 
@@ -140,7 +140,7 @@ impl Suite {
     }
 }
 
-impl Trial {
+impl ExportedRun {
     /// Evaluations spent.
     pub fn evaluations(&self) -> u64 {
         self.trace.last().map_or(1, |(evaluation, _)| *evaluation)

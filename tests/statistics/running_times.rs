@@ -1,7 +1,7 @@
 //! Quantiles, intervals, running times and profiles.
 
 use driftless::analysis::statistics::{
-    Bootstrap, Step, Trial, convergence_target, data_profiles, expected_running_time,
+    Bootstrap, ProfileStep, Trial, convergence_target, data_profiles, expected_running_time,
     performance_profiles, quantile, simulated_restarts,
 };
 use driftless::oracle::Rng;
@@ -112,7 +112,7 @@ fn nothing_solved_takes_for_ever() {
 }
 
 /// A profile's shares at given times.
-fn shares(profile: &[Step], at: &[f64]) -> Vec<f64> {
+fn shares(profile: &[ProfileStep], at: &[f64]) -> Vec<f64> {
     let share = |&time: &f64| {
         let steps = profile.partition_point(|step| step.time <= time);
         steps.checked_sub(1).map_or(0.0, |last| profile[last].share)
@@ -141,8 +141,11 @@ fn profiles_are_those_of_optimagic() {
 fn problems_that_nobody_solves_count() {
     let times = [vec![30.0, f64::INFINITY], vec![f64::INFINITY; 2], vec![8.0, 4.0]];
     let expected = [
-        vec![Step { time: 1.0, share: 1.0 / 3.0 }, Step { time: 2.0, share: 2.0 / 3.0 }],
-        vec![Step { time: 1.0, share: 1.0 / 3.0 }],
+        vec![
+            ProfileStep { time: 1.0, share: 1.0 / 3.0 },
+            ProfileStep { time: 2.0, share: 2.0 / 3.0 },
+        ],
+        vec![ProfileStep { time: 1.0, share: 1.0 / 3.0 }],
     ];
     assert_eq!(performance_profiles(&times), expected);
     assert!(performance_profiles(&[]).is_empty());

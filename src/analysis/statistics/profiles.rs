@@ -2,7 +2,7 @@
 
 /// Where a profile steps up. It keeps each share up to the next step, and is 0 before the first.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
+pub struct ProfileStep {
     /// Time, in the profile's unit.
     pub time: f64,
     /// Share of all problems that are solved by then.
@@ -14,7 +14,7 @@ pub struct Step {
 ///
 /// `times[problem][solver]` is a positive time, infinite where the problem is not solved. Problems that no solver solves count among all. Profiles depend on the solvers compared:
 /// name them. Dolan and Moré (2002), doi 10.1007/s101070100263.
-pub fn performance_profiles(times: &[Vec<f64>]) -> Vec<Vec<Step>> {
+pub fn performance_profiles(times: &[Vec<f64>]) -> Vec<Vec<ProfileStep>> {
     profiles(times, |_, times| times.iter().copied().fold(f64::INFINITY, f64::min))
 }
 
@@ -23,13 +23,13 @@ pub fn performance_profiles(times: &[Vec<f64>]) -> Vec<Vec<Step>> {
 ///
 /// `evaluations[problem][solver]` is infinite where the problem is not solved; `dimensions[problem]` is
 /// `n`. Moré and Wild (2009), doi 10.1137/080724083.
-pub fn data_profiles(evaluations: &[Vec<f64>], dimensions: &[usize]) -> Vec<Vec<Step>> {
+pub fn data_profiles(evaluations: &[Vec<f64>], dimensions: &[usize]) -> Vec<Vec<ProfileStep>> {
     let dimension = |problem| dimensions.get(problem).copied().unwrap_or_default();
     profiles(evaluations, |problem, _| (dimension(problem) + 1) as f64)
 }
 
 /// Profiles of times in each problem's own unit.
-fn profiles(times: &[Vec<f64>], unit: impl Fn(usize, &[f64]) -> f64) -> Vec<Vec<Step>> {
+fn profiles(times: &[Vec<f64>], unit: impl Fn(usize, &[f64]) -> f64) -> Vec<Vec<ProfileStep>> {
     let units: Vec<f64> = times.iter().enumerate().map(|(i, row)| unit(i, row)).collect();
     let solvers = times.first().map_or(0, Vec::len);
     let profile = |solver: usize| {
@@ -41,12 +41,12 @@ fn profiles(times: &[Vec<f64>], unit: impl Fn(usize, &[f64]) -> f64) -> Vec<Vec<
     (0..solvers).map(profile).collect()
 }
 
-fn steps(mut solved: Vec<f64>, problems: usize) -> Vec<Step> {
+fn steps(mut solved: Vec<f64>, problems: usize) -> Vec<ProfileStep> {
     solved.sort_by(f64::total_cmp);
     let mut count = 0;
     let together = solved.chunk_by(|a, b| a == b).map(|equal| {
         count += equal.len();
-        Step { time: equal[0], share: count as f64 / problems as f64 }
+        ProfileStep { time: equal[0], share: count as f64 / problems as f64 }
     });
     together.collect()
 }

@@ -24,50 +24,56 @@ struct Times {
     restarted: Vec<f64>,
 }
 
+impl Times {
+    fn extend(&mut self, other: &Self) {
+        self.runs.extend(&other.runs);
+        self.restarted.extend(&other.restarted);
+    }
+
+    fn sorted(mut self) -> Self {
+        self.runs.sort_by(f64::total_cmp);
+        self.restarted.sort_by(f64::total_cmp);
+        self
+    }
+}
+
+/// A curve: the optimiser's and the group's label, and the times behind it.
+type Curve<'a> = ([&'a str; 2], Times);
+
 /// One curve an optimiser and group, and one an optimiser over all.
 pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
     let budget = field.runs.iter().map(|run| run.budget).max().unwrap_or(1);
     let grid = grid(10.0 * budget as f64);
-    let mut columns = (vec![], vec![], vec![], vec![], vec![]);
-    let mut all: Vec<Times> = field.plan.optimisers.iter().map(|_| Times::default()).collect();
-    let mut add = |labels: [&str; 2], times: &mut Times| {
-        for list in [&mut times.runs, &mut times.restarted] {
-            list.sort_by(f64::total_cmp);
-        }
-        for &evaluations in &grid {
-            columns.0.push(labels[1].to_owned());
-            columns.1.push(labels[0].to_owned());
-            columns.2.push(evaluations);
-            columns.3.push(share(&times.runs, evaluations));
-            columns.4.push(share(&times.restarted, evaluations));
-        }
-    };
-    let mut groups = std::collections::HashSet::new();
-    for group in &field.groups {
-        let mut times = times_of(field, group);
-        let over_all = &mut all[group[0].optimiser];
-        over_all.runs.extend(&times.runs);
-        over_all.restarted.extend(&times.restarted);
-        let labels = field.labels(group);
-        groups.insert(labels[1]);
-        add(labels, &mut times);
-    }
-    if groups.len() > 1 {
-        for (i, times) in all.iter_mut().enumerate().filter(|(_, times)| !times.runs.is_empty()) {
-            add([field.optimiser(i), "all"], times);
-        }
-    }
+    let curves = curves(field);
+    let rows = || curves.iter().flat_map(|curve| grid.iter().map(move |&at| (curve, at)));
     let frame = df!(
-        "group" => columns.0,
-        "optimiser" => columns.1,
-        "evaluations" => columns.2,
-        "share of runs" => columns.3,
-        "share with restarts" => columns.4,
+        "group" => rows().map(|((labels, _), _)| labels[1]).collect::<Vec<_>>(),
+        "optimiser" => rows().map(|((labels, _), _)| labels[0]).collect::<Vec<_>>(),
+        "evaluations" => rows().map(|(_, at)| at).collect::<Vec<_>>(),
+        "share of runs" => rows().map(|((_, t), at)| share(&t.runs, at)).collect::<Vec<_>>(),
+        "share with restarts" =>
+            rows().map(|((_, t), at)| share(&t.restarted, at)).collect::<Vec<_>>(),
     )?;
     let caption = "Share of pairs of instance and target reached within so many evaluations; 51 targets from 10² to \
         10⁻⁸ above the least cost known or found. With restarts: a run that fails is followed by others, drawn with \
         replacement, until one succeeds.";
     Ok(Table::curve("running-time-distribution", caption, frame))
+}
+
+fn curves<'a>(field: &'a Field<'_>) -> Vec<Curve<'a>> {
+    let mut all: Vec<Times> = field.plan.optimisers.iter().map(|_| Times::default()).collect();
+    let mut curves: Vec<Curve<'_>> = Vec::new();
+    for group in &field.groups {
+        let times = times_of(field, group);
+        all[group[0].optimiser].extend(&times);
+        curves.push((field.labels(group), times.sorted()));
+    }
+    let first = curves.first().map(|(labels, _)| labels[1]);
+    if curves.iter().any(|(labels, _)| Some(labels[1]) != first) {
+        let over_all = all.into_iter().enumerate().filter(|(_, times)| !times.runs.is_empty());
+        curves.extend(over_all.map(|(i, times)| ([field.optimiser(i), "all"], times.sorted())));
+    }
+    curves
 }
 
 /// Evaluations, evenly spaced on a logarithmic axis.

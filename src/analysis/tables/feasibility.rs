@@ -2,8 +2,9 @@
 
 use polars::prelude::*;
 
-use super::{Field, Table, quartiles};
+use super::{Field, Table};
 use crate::analysis::Run;
+use crate::analysis::statistics::quartiles;
 
 /// One line a group and optimiser.
 pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {

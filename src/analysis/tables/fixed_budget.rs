@@ -3,7 +3,8 @@
 use polars::prelude::*;
 use rayon::prelude::*;
 
-use super::{Field, Table, interval, median, quartiles};
+use super::{Field, Table, interval};
+use crate::analysis::statistics::{median, quartiles};
 
 /// One line a group, number of evaluations and optimiser.
 pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {

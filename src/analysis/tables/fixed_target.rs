@@ -3,9 +3,9 @@
 use polars::prelude::*;
 use rayon::prelude::*;
 
-use super::{Field, Table, interval, quartiles};
+use super::{Field, Table, interval};
 use crate::analysis::Run;
-use crate::analysis::statistics::{Trial, expected_running_time};
+use crate::analysis::statistics::{Trial, expected_running_time, quartiles};
 
 /// One line an instance and target.
 pub(super) fn targets(field: &Field<'_>) -> PolarsResult<Table> {

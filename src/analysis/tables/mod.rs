@@ -12,7 +12,7 @@ mod ranks;
 use polars::prelude::*;
 
 use super::runs::groups;
-use super::statistics::{Bootstrap, quantile};
+use super::statistics::Bootstrap;
 use super::{Run, Targets, summary};
 use crate::experiment::Plan;
 use crate::oracle::Rng;
@@ -134,23 +134,4 @@ fn interval<T: Copy>(sample: &[T], statistic: impl Fn(&[T]) -> f64) -> [f64; 2] 
     let mut rng = Rng::new(1);
     let draw = |count| rng.index(count);
     Bootstrap { level: LEVEL, resamples }.interval(sample, statistic, draw)
-}
-
-/// Quartiles of unsorted values; infinite ones are the largest.
-fn quartiles(values: impl Iterator<Item = f64>) -> [f64; 3] {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    [0.25, 0.5, 0.75].map(|q| quantile(&sorted, q))
-}
-
-/// The median of unsorted values.
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() {
-        return f64::NAN;
-    }
-    let odd = values.len() % 2 == 1;
-    let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    let lower = if odd { upper } else { below.iter().copied().fold(f64::NEG_INFINITY, f64::max) };
-    if lower == upper { upper } else { lower + 0.5 * (upper - lower) }
 }

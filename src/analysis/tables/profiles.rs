@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use polars::prelude::*;
 
 use super::{Field, Table};
-use crate::analysis::statistics::{Step, data_profiles, performance_profiles};
+use crate::analysis::statistics::{ProfileStep, data_profiles, performance_profiles};
 
 /// Both profiles, a curve an optimiser and target. A problem is an instance with a seed; those that an
 /// optimiser has not tried yet are left out.
@@ -63,13 +63,19 @@ fn problems(field: &Field<'_>, k: usize) -> (Vec<Vec<f64>>, Vec<usize>) {
 struct Curves {
     targets: Vec<String>,
     optimisers: Vec<String>,
-    steps: Vec<Step>,
+    steps: Vec<ProfileStep>,
 }
 
 impl Curves {
     /// Every curve begins with a share of 0, be it where it ends as well.
-    fn add(&mut self, field: &Field<'_>, target: &str, profiles: Vec<Vec<Step>>, first: f64) {
-        let zero = Step { time: first, share: 0.0 };
+    fn add(
+        &mut self,
+        field: &Field<'_>,
+        target: &str,
+        profiles: Vec<Vec<ProfileStep>>,
+        first: f64,
+    ) {
+        let zero = ProfileStep { time: first, share: 0.0 };
         for (optimiser, steps) in profiles.into_iter().enumerate() {
             for step in std::iter::once(zero).chain(steps) {
                 self.targets.push(target.to_owned());

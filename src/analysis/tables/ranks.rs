@@ -3,8 +3,8 @@
 use polars::prelude::*;
 
 use super::pairs::{Pair, pairs};
-use super::{ALPHA, Field, Table, median};
-use crate::analysis::statistics::{Friedman, cliques, critical_difference, friedman};
+use super::{ALPHA, Field, Table};
+use crate::analysis::statistics::{Friedman, cliques, critical_difference, friedman, median};
 use crate::analysis::ties::settled;
 
 /// What the tests stand on: final costs of all optimisers, block by block.
