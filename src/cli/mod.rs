@@ -18,6 +18,7 @@ macro_rules! note {
 mod check;
 #[cfg(feature = "harness")]
 mod compact;
+#[cfg(feature = "harness")]
 mod export;
 mod list;
 mod motion;
@@ -173,6 +174,7 @@ pub fn main() -> ExitCode {
         Verb::Report(report) => report.execute(),
         #[cfg(feature = "harness")]
         Verb::Compact(compact) => compact.execute(),
+        #[cfg(feature = "harness")]
         Verb::Export(export) => export.execute(),
         Verb::Plan(plan) => plan.execute(),
         Verb::Replay(replay) => replay.execute(),

@@ -271,6 +271,15 @@ fn damaged_files_are_named_and_done_again() {
         );
         assert_eq!(results(&out), calm);
     }
+    // Remains of killed processes go when they are a day old.
+    let (old, young) = (out.join("traces/.tmpold"), out.join("traces/.tmpyoung"));
+    for path in [&old, &young] {
+        fs::write(path, "half").unwrap();
+    }
+    let yesterday = std::time::SystemTime::now() - Duration::from_hours(25);
+    fs::File::options().write(true).open(&old).unwrap().set_modified(yesterday).unwrap();
+    assert!(folder.run(&["compact", "calm"]).status.success());
+    assert!(!old.exists() && young.exists());
     // What is no batch is none of ours, and a link that leads nowhere is no reason to wait.
     fs::write(out.join("runs/notes.parquet"), "not a table").unwrap();
     assert!(folder.run(&["status", "calm"]).status.success());

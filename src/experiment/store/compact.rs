@@ -1,12 +1,12 @@
 //! Many small files into few large ones.
 
 use std::collections::HashSet;
-use std::fs::{File, TryLockError};
-use std::time::SystemTime;
+use std::fs::{self, DirEntry, File, TryLockError};
+use std::time::{Duration, SystemTime};
 
 use polars::prelude::*;
 
-use super::read::only;
+use super::read::{is_batch, only};
 use super::{SEVERAL, Stack, Store, StoreError, TABLES, io_error};
 use crate::digest::digest;
 use crate::oracle::Watch;
@@ -18,6 +18,9 @@ const MOST_RUNS: usize = 10_000;
 const MOST_ROWS: usize = 1_000_000;
 /// More batches than that are worth a compaction.
 const MANY: usize = 1_000;
+
+/// Remains of that age are nobody's.
+const OLD: Duration = Duration::from_hours(24);
 
 /// What a compaction did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,6 +73,7 @@ impl Store {
         let before = self.batch_count()?;
         let Some(_lock) = self.try_lock()? else { return Ok(None) };
         self.merge(|_| true, watch)?;
+        self.remove_remains()?;
         Ok(Some(Compaction { before, after: self.batch_count()? }))
     }
 
@@ -140,6 +144,32 @@ impl Store {
             open[place].add(batch, keys, tables)?;
         }
         open.into_iter().try_for_each(|merged| self.close(merged))
+    }
+
+    /// Removes what processes that were killed have left: temporary files, and files of batches that are in
+    /// some of the folders only. What is younger may still be at work.
+    fn remove_remains(&self) -> Result<(), StoreError> {
+        let batches = self.batches()?;
+        let is_old = |entry: &DirEntry| {
+            let modified = entry.metadata().and_then(|metadata| metadata.modified());
+            modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > OLD))
+        };
+        for table in TABLES {
+            let folder = self.folder.join(table);
+            let entries = fs::read_dir(&folder).map_err(|e| io_error("list", &folder, e))?;
+            for entry in entries.flatten() {
+                let name = entry.file_name();
+                let name = name.to_string_lossy();
+                let is_part = |batch: &str| is_batch(batch) && !batches.contains(batch);
+                let remains =
+                    name.starts_with(".tmp") || name.strip_suffix(".parquet").is_some_and(is_part);
+                if remains && is_old(&entry) {
+                    // What cannot be removed harms nobody.
+                    let _ = fs::remove_file(entry.path());
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Keys and tables of a batch that is small or holds what is not to be kept; none of another, nor of

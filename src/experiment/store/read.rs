@@ -182,7 +182,7 @@ fn is_key(batch: &str) -> bool {
 }
 
 /// Whether a file's name is that of a batch; others are none of ours.
-fn is_batch(name: &str) -> bool {
+pub(super) fn is_batch(name: &str) -> bool {
     let digits = name.strip_prefix(SEVERAL).unwrap_or(name);
     digits.len() == 16 && digits.bytes().all(|byte| byte.is_ascii_hexdigit())
 }
