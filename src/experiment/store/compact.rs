@@ -13,7 +13,7 @@ use crate::oracle::Watch;
 use crate::output::sync_folder;
 
 /// A merged batch has no more runs…
-const MOST_RUNS: usize = 10_000;
+pub(super) const MOST_RUNS: usize = 10_000;
 /// …and no more rows of traces than that.
 const MOST_ROWS: usize = 1_000_000;
 /// More batches than that are worth a compaction.
@@ -49,8 +49,8 @@ impl Merged {
     }
 
     /// Whether a batch's tables are too many for it.
-    fn overflows(&self, [traces, _, runs]: &[DataFrame; 3]) -> bool {
-        self.keys.len() + runs.height() > MOST_RUNS
+    fn overflows(&self, [traces, _, runs]: &[DataFrame; 3], most_runs: usize) -> bool {
+        self.keys.len() + runs.height() > most_runs
             || self.tables[0].height() + traces.height() > MOST_ROWS
     }
 
@@ -137,7 +137,7 @@ impl Store {
                 open.push(Merged::default());
                 open.len() - 1
             });
-            if open[place].overflows(&tables) {
+            if open[place].overflows(&tables, self.most_runs) {
                 self.close(std::mem::take(&mut open[place]))?;
             }
             open[place].lacks |= lacks;
@@ -182,7 +182,7 @@ impl Store {
     ) -> Result<Option<(Vec<String>, [DataFrame; 3])>, StoreError> {
         let read = || {
             let keys = self.keys_of(batch)?;
-            let is_large = keys.len() >= MOST_RUNS || self.trace_rows(batch)? >= MOST_ROWS;
+            let is_large = keys.len() >= self.most_runs || self.trace_rows(batch)? >= MOST_ROWS;
             if is_large && keys.iter().all(|key| keep(key)) {
                 return Ok(None);
             }
@@ -215,4 +215,66 @@ fn new_name(keys: &[String]) -> String {
     let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
     let unique = format!("{} {} {}", std::process::id(), now.as_nanos(), keys.join(" "));
     format!("{SEVERAL}{}", digest(&unique))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::store::batch_name;
+    use crate::oracle::Rng;
+
+    fn key(i: usize) -> String {
+        format!("{i:016x}")
+    }
+
+    /// Stores runs of one row a table.
+    fn write(store: &Store, runs: &[usize]) {
+        let keys: Vec<String> = runs.iter().map(|&run| key(run)).collect();
+        let names: Vec<&str> = keys.iter().map(String::as_str).collect();
+        let tables = [0, 1, 2].map(|_| {
+            let mut stack = Stack::default();
+            stack.push(df!("key" => &keys, "run" => runs.iter().map(|&r| r as u64).collect::<Vec<_>>()).unwrap()).unwrap();
+            stack
+        });
+        store.write_batch(&batch_name(&names), tables).unwrap();
+    }
+
+    fn check(store: &Store, expected: &HashSet<usize>) {
+        let keys: HashSet<String> = expected.iter().map(|&run| key(run)).collect();
+        assert_eq!(store.keys().unwrap(), keys);
+        for table in TABLES {
+            let frame = store.read(table, keys.iter().map(String::as_str)).unwrap();
+            assert_eq!(frame.height(), keys.len(), "{table}");
+        }
+    }
+
+    /// Batches of all sizes, many with runs that others have too, as compactions that were killed
+    /// leave them: whatever is merged and removed, every other run is there, once.
+    #[test]
+    fn no_run_is_lost_and_none_is_there_twice() {
+        let mut rng = Rng::new(40);
+        for _ in 0..40 {
+            let folder = tempfile::tempdir().unwrap();
+            let store = Store { most_runs: 5, ..Store::open(folder.path()).unwrap() };
+            let mut expected = HashSet::new();
+            for _ in 0..6 {
+                for _ in 0..1 + rng.index(4) {
+                    let (first, count) = (rng.index(25), 1 + rng.index(7));
+                    let runs: Vec<usize> = (first..first + count).collect();
+                    write(&store, &runs);
+                    expected.extend(runs);
+                }
+                check(&store, &expected);
+                if rng.index(3) == 0 {
+                    let gone: Vec<usize> = (0..3).map(|_| rng.index(30)).collect();
+                    let keys: Vec<String> = gone.iter().map(|&run| key(run)).collect();
+                    store.remove(&keys.iter().map(String::as_str).collect()).unwrap();
+                    expected.retain(|run| !gone.contains(run));
+                } else {
+                    store.compact(&Watch::default()).unwrap().unwrap();
+                }
+                check(&store, &expected);
+            }
+        }
+    }
 }

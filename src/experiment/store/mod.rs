@@ -35,6 +35,8 @@ const TABLES: [&str; 3] = ["traces", "clocks", "runs"];
 #[derive(Debug, Clone)]
 pub struct Store {
     folder: PathBuf,
+    /// A merged batch has no more runs than that.
+    most_runs: usize,
 }
 
 /// A result that could not be written or read.
@@ -67,7 +69,7 @@ impl Store {
 
     /// A folder to read; where it has no tables there are no runs.
     pub fn existing(folder: &Path) -> Self {
-        Self { folder: folder.to_owned() }
+        Self { folder: folder.to_owned(), most_runs: compact::MOST_RUNS }
     }
 
     /// Stores runs, all of them or none.
