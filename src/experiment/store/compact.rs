@@ -258,7 +258,7 @@ mod tests {
             let store = Store { most_runs: 5, ..Store::open(folder.path()).unwrap() };
             let mut expected = HashSet::new();
             for _ in 0..6 {
-                for _ in 0..1 + rng.index(4) {
+                for _ in 0..=rng.index(4) {
                     let (first, count) = (rng.index(25), 1 + rng.index(7));
                     let runs: Vec<usize> = (first..first + count).collect();
                     write(&store, &runs);
