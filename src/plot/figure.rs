@@ -72,16 +72,15 @@ impl Figure {
     pub fn save(&self, folder: &Path, name: &str) -> Result<(), PlotError> {
         create_folder(folder)?;
         let tree = self.tree()?;
-        // Text becomes outlines, so the SVG looks the same wherever it is opened.
-        let svg = tree.to_string(&usvg::WriteOptions {
-            coordinates_precision: 3,
-            transforms_precision: 5,
-            ..usvg::WriteOptions::default()
-        });
-        write_file(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
+        write_file(&folder.join(format!("{name}.svg")), svg(&tree).as_bytes())?;
         write_file(&folder.join(format!("{name}.png")), &png(&tree)?)?;
         write_file(&folder.join(format!("{name}.pdf")), &pdf(&tree)?)?;
         Ok(())
+    }
+
+    /// The figure as SVG.
+    pub fn svg(&self) -> Result<String, PlotError> {
+        Ok(svg(&self.tree()?))
     }
 
     fn tree(&self) -> Result<usvg::Tree, PlotError> {
@@ -164,6 +163,15 @@ fn draw_legend(
         }
     }
     Ok(())
+}
+
+/// Text becomes outlines, so the SVG looks the same wherever it is opened.
+fn svg(tree: &usvg::Tree) -> String {
+    tree.to_string(&usvg::WriteOptions {
+        coordinates_precision: 3,
+        transforms_precision: 5,
+        ..usvg::WriteOptions::default()
+    })
 }
 
 fn png(tree: &usvg::Tree) -> Result<Vec<u8>, PlotError> {

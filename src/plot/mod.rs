@@ -1,6 +1,7 @@
 //! Charts: one drawing, written as SVG, PNG and PDF.
 
 mod base_attitude;
+mod chart;
 mod convergence;
 mod derivatives;
 mod figure;
@@ -11,6 +12,7 @@ mod style;
 use std::path::Path;
 
 pub use base_attitude::base_attitude;
+pub use chart::Chart;
 pub use convergence::convergence;
 pub use derivatives::derivatives;
 pub use figure::{Figure, PlotError};
@@ -22,9 +24,38 @@ use crate::task::Task;
 /// Intervals at which a motion is sampled for its charts.
 pub const SAMPLES: usize = 600;
 
+/// The paper's Figures 4, 5 and 6 for a motion; their table is `motion`.
+pub fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
+    let chart = |name: &str, title: &str, caption: &str, figure| Chart {
+        name: name.to_owned(),
+        title: title.to_owned(),
+        caption: caption.to_owned(),
+        table: "motion",
+        figure,
+    };
+    vec![
+        chart(
+            "joint-angles",
+            "Joint angles",
+            "Joint angles of the best motion over time.",
+            joint_angles(motion),
+        ),
+        chart(
+            "joint-derivatives",
+            "Joint rates, accelerations and jerks",
+            "Joint rates, accelerations and jerks of the best motion over time; dotted lines are the limits.",
+            derivatives(motion, &task.limits),
+        ),
+        chart(
+            "base-attitude",
+            "Attitude of the base",
+            "ZYX Euler angles of the base over time; dotted lines are the goal's.",
+            base_attitude(motion, task),
+        ),
+    ]
+}
+
 /// Writes the paper's Figures 4, 5 and 6 for a motion into a folder.
 pub fn write_motion_figures(folder: &Path, motion: &Motion, task: &Task) -> Result<(), PlotError> {
-    joint_angles(motion).save(folder, "joint-angles")?;
-    derivatives(motion, &task.limits).save(folder, "joint-derivatives")?;
-    base_attitude(motion, task).save(folder, "base-attitude")
+    motion_charts(motion, task).iter().try_for_each(|chart| chart.figure.save(folder, &chart.name))
 }
