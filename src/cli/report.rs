@@ -1,21 +1,19 @@
 //! `driftless report`.
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use clap::Args;
+use rayon::prelude::*;
 
 use super::CliError;
 use super::results::{Results, ResultsFolder};
 use super::run::warn_of_budgets;
-use crate::analysis::tables::{NAMES, Table, tables};
-use crate::analysis::{
-    self, Run, best_run, convergence, csv, latex, markdown, render, summary, targets,
-};
-use crate::experiment::Plan;
+use crate::analysis::tables::{NAMES, Table, motion_table, tables};
+use crate::analysis::{self, Run, best_run, csv, latex, markdown, render, summary, targets};
+use crate::experiment::{Instance, Plan};
 use crate::output::{create_folder, write_file};
-use crate::plot;
-use crate::problem::{BestKnown, Motion};
+use crate::plot::{self, Chart};
+use crate::problem::{BestKnown, Motion, Reorientation};
 
 /// Make tables and figures from what is stored
 #[derive(Debug, Args)]
@@ -28,87 +26,107 @@ impl Report {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let Results { folder, plan, store } = self.results.open()?;
         let runs = analysis::load(&plan, &store)?;
-        write_tables(&plan, &runs, &folder.join("tables"))?;
         report(&plan, &runs, &folder)
     }
 }
 
 /// Writes every table as CSV and, unless it is a curve, as Markdown and LaTeX; tables from before that these
 /// runs do not give are removed.
-fn write_tables(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError> {
+fn write_tables(tables: &[Table], folder: &Path) -> Result<(), CliError> {
     create_folder(folder)?;
-    let tables = tables(plan, runs, &targets(plan, runs))?;
-    for name in NAMES.iter().filter(|name| tables.iter().all(|table| table.name != **name)) {
-        for extension in ["csv", "md", "tex"] {
-            // What is not there need not be removed, and what cannot be removed cannot be written either.
-            let _ = std::fs::remove_file(folder.join(format!("{name}.{extension}")));
-        }
-    }
+    let gone = NAMES.iter().filter(|name| tables.iter().all(|table| table.name != **name));
+    remove(folder, gone, &["csv", "md", "tex"]);
     for Table { name, caption, frame, is_curve } in tables {
-        write_file(&folder.join(format!("{name}.csv")), &csv(&frame)?)?;
+        write_file(&folder.join(format!("{name}.csv")), &csv(frame)?)?;
         if !is_curve {
-            let text = format!("{}\n{caption}\n", markdown(&frame)?);
+            let text = format!("{}\n{caption}\n", markdown(frame)?);
             write_file(&folder.join(format!("{name}.md")), text.as_bytes())?;
-            let text = format!("% {caption}\n{}", latex(&frame)?);
+            let text = format!("% {caption}\n{}", latex(frame)?);
             write_file(&folder.join(format!("{name}.tex")), text.as_bytes())?;
         }
     }
     Ok(())
 }
 
-/// Most panels of a figure.
-const MOST_PANELS: usize = 24;
+/// Writes every chart as SVG, PNG and PDF; charts from before that these runs do not give are removed.
+fn write_charts(charts: &[Chart], folder: &Path) -> Result<(), CliError> {
+    let all = plot::NAMES.iter().chain(&plot::MOTION_NAMES);
+    let gone = all.filter(|name| charts.iter().all(|chart| chart.name != **name));
+    remove(folder, gone, &["svg", "png", "pdf"]);
+    Ok(charts.par_iter().try_for_each(|chart| chart.figure.save(folder, &chart.name))?)
+}
+
+/// What is not there need not be removed, and what cannot be removed cannot be written either.
+fn remove<'a>(folder: &Path, names: impl Iterator<Item = &'a &'a str>, extensions: &[&str]) {
+    for name in names {
+        for extension in extensions {
+            let _ = std::fs::remove_file(folder.join(format!("{name}.{extension}")));
+        }
+    }
+}
+
 /// Most instances whose best motion is told.
 const MOST_TOLD: usize = 24;
 
-/// Prints the summary of all stored runs of the plan and draws them.
+/// Prints the summary of all stored runs of the plan; writes and draws all that they give.
 pub(super) fn report(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError> {
     if runs.len() < plan.runs.len() {
         say!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
     }
-    say!("{}", render(&summary(plan, runs, &targets(plan, runs))?)?);
+    let targets = targets(plan, runs);
+    say!("{}", render(&summary(plan, runs, &targets)?)?);
     warn_of_budgets(plan);
-    let figures = folder.join("figures");
-    let groups: HashSet<&str> = plan.instances.iter().map(|i| i.group.as_str()).collect();
-    if groups.len() <= MOST_PANELS {
-        let curves = convergence(plan, runs);
-        plot::convergence(&curves, plan.cost_symbol()).save(&figures, "convergence")?;
-    } else {
-        note!("note: convergence of more than {MOST_PANELS} groups of instances is not drawn");
+    let best = best_motions(plan, runs);
+    tell(plan, &best)?;
+    let mut tables = tables(plan, runs, &targets)?;
+    let mut charts = plot::charts(plan, &tables)?;
+    // Costs of different instances do not compare, so there is no best of all to draw.
+    if let (1, [(_, problem, run)]) = (plan.instances.len(), &best[..]) {
+        let motion = Motion::sample(problem, &run.coefficients, run.duration, plot::SAMPLES);
+        charts.extend(plot::motion_charts(&motion, problem.task()));
+        tables.push(motion_table(&motion)?);
     }
+    write_tables(&tables, &folder.join("tables"))?;
+    write_charts(&charts, &folder.join("figures"))?;
+    say!("{}: tables/, figures/", folder.display());
+    let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
+    if failed > 0 {
+        note!("warning: {failed} of {} runs failed or found nothing", runs.len());
+    }
+    Ok(())
+}
+
+/// The best motion of an instance, and the run that found it.
+type BestMotion<'a> = (&'a Instance, &'a Reorientation, &'a Run);
+
+/// The best motion of every instance that has one.
+fn best_motions<'a>(plan: &'a Plan, runs: &'a [Run]) -> Vec<BestMotion<'a>> {
     let mut by_instance = vec![Vec::new(); plan.instances.len()];
     for run in runs {
         by_instance[run.instance].push(run);
     }
-    for (instance, runs) in plan.instances.iter().zip(by_instance).take(MOST_TOLD) {
-        let (Some(problem), Some(best)) = (instance.reorientation(), best_run(runs.into_iter()))
-        else {
-            continue;
-        };
-        let optimiser = &plan.optimisers[best.optimiser].label;
+    let best = |(instance, runs): (&'a Instance, Vec<&'a Run>)| {
+        Some((instance, instance.reorientation()?, best_run(runs.into_iter())?))
+    };
+    plan.instances.iter().zip(by_instance).filter_map(best).collect()
+}
+
+fn tell(plan: &Plan, best: &[BestMotion<'_>]) -> Result<(), CliError> {
+    for (instance, problem, run) in best.iter().take(MOST_TOLD) {
+        let optimiser = &plan.optimisers[run.optimiser].label;
         let known = BestKnown::of(problem)
-            .map_or_else(String::new, |known| format!(" ({})", known.compared_with(best.cost)));
+            .map_or_else(String::new, |known| format!(" ({})", known.compared_with(run.cost)));
         let on = if instance.label.is_empty() { "" } else { " for " };
         say!(
             "best motion{on}{}: {optimiser}, seed {}: J {:.6}{known}, t_f {:.4} s",
             instance.label,
-            best.seed,
-            best.cost,
-            best.duration
+            run.seed,
+            run.cost,
+            run.duration
         );
-        // Costs of different instances do not compare, so there is no best of all to draw.
-        if plan.instances.len() == 1 {
-            let motion = Motion::sample(problem, &best.coefficients, best.duration, plot::SAMPLES);
-            plot::write_motion_figures(&figures, &motion, problem.task())?;
-        }
     }
-    if plan.instances.len() > MOST_TOLD {
-        say!("… `driftless report` lists the best motions of all instances in tables/best.csv");
-    }
-    say!("results: {}, figures: {}", folder.display(), figures.display());
-    let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
-    if failed > 0 {
-        note!("warning: {failed} of {} runs failed or found nothing", runs.len());
+    if best.len() > MOST_TOLD {
+        say!("… all instances' best motions are in tables/best.csv");
     }
     Ok(())
 }

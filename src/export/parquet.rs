@@ -1,28 +1,16 @@
 //! Parquet.
 
-use polars::prelude::*;
+use polars::prelude::ParquetWriter;
 
-use super::{ExportError, Row, rows};
+use super::ExportError;
+use crate::analysis::tables::motion_table;
 use crate::problem::Motion;
 
 /// The table of a motion.
 pub(super) fn motion(motion: &Motion) -> Result<Vec<u8>, ExportError> {
-    let rows: Vec<Row<'_>> = rows(motion).collect();
-    let real = |value: fn(&Row<'_>) -> f64| rows.iter().map(value).collect::<Vec<_>>();
     let mut bytes = Vec::new();
-    df!(
-        "time" => real(|r| r.time),
-        "joint" => rows.iter().map(|r| r.joint).collect::<Vec<_>>(),
-        "angle" => real(|r| r.angle),
-        "rate" => real(|r| r.rate),
-        "acceleration" => real(|r| r.acceleration),
-        "jerk" => real(|r| r.jerk),
-        "base_w" => real(|r| r.base_w),
-        "base_x" => real(|r| r.base_x),
-        "base_y" => real(|r| r.base_y),
-        "base_z" => real(|r| r.base_z),
-    )
-    .and_then(|mut frame| ParquetWriter::new(&mut bytes).finish(&mut frame))
-    .map_err(|e| ExportError::Format { format: "Parquet", reason: e.to_string() })?;
+    motion_table(motion)
+        .and_then(|mut table| ParquetWriter::new(&mut bytes).finish(&mut table.frame))
+        .map_err(|e| ExportError::Format { format: "Parquet", reason: e.to_string() })?;
     Ok(bytes)
 }

@@ -1,7 +1,9 @@
 //! ZYX Euler angles of the base over time: the paper's Figure 6.
 
+use super::axis::Axis;
 use super::figure::Figure;
-use super::panel::{Axis, Line, MARGIN, Panel, extent};
+use super::marks::{Line, Mark};
+use super::panel::{MARGIN, Panel, extent};
 use super::style::Stroke;
 use crate::problem::Motion;
 use crate::task::Task;
@@ -19,14 +21,9 @@ pub fn base_attitude(motion: &Motion, task: &Task) -> Figure {
         lines.push(Line::over_time(name, Stroke::of(k), &motion.time, values));
     }
     for (i, angle) in goals.into_iter().enumerate() {
-        lines.push(Line::level(if i == 0 { "goal" } else { "" }, angle, end));
+        lines.push(Line::level(if i == 0 { "goal" } else { "" }, angle, [0.0, end]));
     }
-    let panel = Panel {
-        title: String::new(),
-        x: Axis::linear("time t [s]", [0.0, end], 0.0),
-        y: Axis::linear("base Euler angle [°]", extent(&lines), MARGIN),
-        bands: Vec::new(),
-        lines,
-    };
-    Figure { panels: vec![panel], panel_height: 54.0 }
+    let x = Axis::linear("time t [s]", [0.0, end], 0.0);
+    let y = Axis::linear("base Euler angle [°]", extent(&lines), MARGIN);
+    Figure::column(vec![Panel::new(x, y, lines.into_iter().map(Mark::Line).collect())], 44.0)
 }

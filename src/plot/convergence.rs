@@ -1,70 +1,68 @@
 //! Best cost against evaluations.
 
-use std::collections::HashSet;
+use polars::prelude::DataFrame;
 
-use super::figure::Figure;
-use super::panel::{Axis, Band, Line, MARGIN, Panel};
-use super::style::Stroke;
-use crate::analysis::Curve;
+use super::axis::Axis;
+use super::curves::{Curve, curves, facets, range};
+use super::figure::{Figure, PlotError};
+use super::looks::Looks;
+use super::marks::{Line, Mark, Marked};
+use super::panel::{MARGIN, Panel};
+use super::style::{FAINT, Stroke};
 
 /// Costs below are drawn at the axis's lower end; a test function's optimum, zero, has no other place
 /// on it.
 const LOWEST: f64 = 1e-9;
 
-/// Height of the panel where there is one, and of each where there are more \[mm\].
-const ONE: f64 = 54.0;
-const MANY: f64 = 40.0;
-
-/// Median of the best cost so far over the runs, with the quartiles as a band: a panel for each group
-/// of instances. `symbol` stands for the cost.
-pub fn convergence(curves: &[Curve], symbol: &str) -> Figure {
-    let groups = distinct(curves.iter().map(|curve| curve.group.as_str()));
-    let optimisers = distinct(curves.iter().map(|curve| curve.optimiser.as_str()));
-    let evaluations = extent(curves.iter().flat_map(|c| &c.evaluations));
-    let panels = groups.iter().map(|group| {
-        let curves = curves.iter().filter(|curve| curve.group == *group);
-        let costs = extent(curves.clone().flat_map(|c| c.quartiles.iter().flatten()));
-        let mut panel = Panel {
-            title: (*group).to_owned(),
-            x: Axis::logarithmic("evaluations", evaluations, 0.0),
-            y: Axis::logarithmic(&format!("best {symbol}, median and quartiles"), costs, MARGIN),
-            bands: Vec::new(),
-            lines: Vec::new(),
-        };
-        for curve in curves {
-            // An optimiser looks the same in every panel.
-            let i = optimisers.iter().position(|name| *name == curve.optimiser).unwrap_or(0);
-            draw(curve, Stroke::of(i), &mut panel);
-        }
-        panel
+/// Median of the best cost so far over the runs, with the quartiles as a band, from the table `convergence`.
+/// `symbol` stands for the cost.
+pub fn convergence(
+    frame: &DataFrame,
+    looks: &Looks,
+    symbol: &str,
+) -> Result<Option<Figure>, PlotError> {
+    let quartiles = ["quartile 1", "median", "quartile 3"];
+    let curves = curves(frame, "group", "evaluations", &quartiles)?;
+    let Some(facets) = facets(&curves, looks) else { return Ok(None) };
+    let evaluations = range(curves.iter().flat_map(|c| &c.points).map(|(x, _)| *x), 1.0);
+    let panels = facets.into_iter().map(|facet| {
+        let shown = facet.curves.iter().chain(&facet.others);
+        let costs = shown.flat_map(|c| &c.points).flat_map(|(_, y)| y.iter().copied());
+        let costs = range(costs, LOWEST);
+        let mut marks: Vec<Mark> = facet.others.iter().map(|curve| faint(median(curve))).collect();
+        marks.extend(facet.curves.iter().map(|curve| band(curve, looks)));
+        marks.extend(facet.curves.iter().map(|c| curve_line(c, median(c), looks)));
+        let x = Axis::logarithmic("evaluations", evaluations, 0.0);
+        let y = Axis::logarithmic(&format!("best {symbol}, median and quartiles"), costs, MARGIN);
+        Panel::new(x, y, marks).titled(&facet.title)
     });
-    let panels: Vec<Panel> = panels.collect();
-    Figure { panel_height: if panels.len() == 1 { ONE } else { MANY }, panels }
+    Ok(Some(Figure::grid(panels.collect())))
 }
 
-fn draw(curve: &Curve, stroke: Stroke, panel: &mut Panel) {
-    let places = curve.evaluations.iter().zip(&curve.quartiles);
-    let places: Vec<_> = places.filter(|(_, q)| q.iter().all(|v| v.is_finite())).collect();
-    panel.bands.push(Band {
-        colour: stroke.colour,
-        points: places.iter().map(|(n, [low, _, high])| [**n, *low, *high]).collect(),
-    });
-    panel.lines.push(Line {
+/// A curve that others are compared with.
+pub(super) fn faint(points: Vec<[f64; 2]>) -> Mark {
+    Mark::Line(Line::new("", Stroke::plain(FAINT, 0.2), points))
+}
+
+/// A curve in its optimiser's look.
+pub(super) fn curve_line(curve: &Curve, points: Vec<[f64; 2]>, looks: &Looks) -> Mark {
+    Mark::Line(Line {
         name: curve.optimiser.clone(),
-        stroke,
-        points: places.iter().map(|(n, [_, median, _])| [**n, *median]).collect(),
-    });
+        stroke: looks.stroke(&curve.optimiser),
+        points,
+        marked: Marked::Evenly(looks.stagger(&curve.optimiser)),
+    })
 }
 
-/// Every name once, in the order of their first appearance.
-fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut seen = HashSet::new();
-    names.filter(|name| seen.insert(*name)).collect()
+fn median(curve: &Curve) -> Vec<[f64; 2]> {
+    let points = curve.points.iter().filter(|(_, y)| y[1].is_finite());
+    points.map(|(x, y)| [*x, y[1].max(LOWEST)]).collect()
 }
 
-/// The smallest and the largest finite value, neither below the axis's lower end.
-fn extent<'a>(values: impl Iterator<Item = &'a f64>) -> [f64; 2] {
-    let finite = values.filter(|v| v.is_finite()).map(|v| v.max(LOWEST));
-    let [low, high] = finite.fold([f64::INFINITY, 0.0], |[l, h]: [f64; 2], v| [l.min(v), h.max(v)]);
-    if high > low { [low, high] } else { [0.1, 10.0] }
+fn band(curve: &Curve, looks: &Looks) -> Mark {
+    let points = curve.points.iter().filter(|(_, y)| y.iter().all(|v| v.is_finite()));
+    Mark::Band {
+        colour: looks.stroke(&curve.optimiser).colour,
+        points: points.map(|(x, y)| [*x, y[0].max(LOWEST), y[2].max(LOWEST)]).collect(),
+    }
 }

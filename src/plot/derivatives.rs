@@ -13,5 +13,5 @@ pub fn derivatives(motion: &Motion, limits: &Limits) -> Figure {
         distinct.dedup();
         joint_panel(motion, k + 1, label, &distinct)
     });
-    Figure { panels: panels.collect(), panel_height: 40.0 }
+    Figure::column(panels.collect(), 34.0)
 }

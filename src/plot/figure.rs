@@ -2,26 +2,26 @@
 
 use std::collections::HashSet;
 use std::path::Path;
-use std::sync::{Arc, LazyLock};
 
-use plotters::coord::Shift;
 use plotters::drawing::DrawingAreaErrorKind;
-use plotters::element::DashedPathElement;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use polars::prelude::PolarsError;
 use resvg::{tiny_skia, usvg};
 use svg2pdf::{ConversionOptions, PageOptions};
 
-use super::panel::{Line, Panel};
-use super::style::{COLUMN_MM, FONT, INK, text_size, text_width, units};
+use super::panel::{Frame, LINE, Panel};
+use super::sheet::{Anchor, Sheet, fitted, text_width};
+use super::style::{Stroke, TEXT_PT, Width};
 use crate::output::{FileError, create_folder, write_file};
 
-/// Panels one below the other, under one legend; they share the horizontal axis.
+/// Panels in rows, under one legend.
 #[derive(Debug, Clone)]
 pub struct Figure {
+    pub(super) width: Width,
+    /// Panels in a row.
+    pub(super) across: usize,
+    /// Height of what is between a panel's axes \[mm\].
+    pub(super) height: f64,
     pub(super) panels: Vec<Panel>,
-    /// Height of one panel \[mm\].
-    pub(super) panel_height: f64,
 }
 
 /// A figure that could not be drawn or written.
@@ -38,6 +38,9 @@ pub enum PlotError {
         /// Why not.
         reason: String,
     },
+    /// The table to draw is not as it should be.
+    #[error("cannot draw a table: {0}")]
+    Table(#[from] PolarsError),
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
@@ -51,29 +54,35 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for PlotE
 
 /// Resolution of PNG files \[dots per inch\].
 const PNG_DPI: f32 = 300.0;
-
 /// Resolution that SVG's absolute lengths stand for \[dots per inch\].
 const SVG_DPI: f32 = 96.0;
-
-/// Height of one line of the legend \[mm\].
-const LEGEND_LINE: f64 = 3.8;
-
-/// The embedded font, for plotters to measure text with and for usvg to draw it.
-static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
-    // The bytes are a font, so this cannot fail; if it did, plotters would say so when drawing.
-    let _ = plotters::style::register_font(FONT, FontStyle::Normal, notosans::REGULAR_TTF);
-    let mut fonts = usvg::fontdb::Database::new();
-    fonts.load_font_data(notosans::REGULAR_TTF.to_vec());
-    Arc::new(fonts)
-});
+/// Length of a line in the legend, room behind it, and room behind its text \[mm\].
+const SAMPLE: f64 = 6.4;
+const BEHIND_SAMPLE: f64 = 0.7;
+const BEHIND_NAME: f64 = 2.4;
 
 impl Figure {
+    /// Panels one below the other, a column wide.
+    pub(super) fn column(panels: Vec<Panel>, height: f64) -> Self {
+        Self { width: Width::Column, across: 1, height, panels }
+    }
+
+    /// One panel a column wide; more in rows over the page's width.
+    pub(super) fn grid(panels: Vec<Panel>) -> Self {
+        match panels.len() {
+            0 | 1 => Self::column(panels, 44.0),
+            2 => Self { width: Width::Page, across: 2, height: 44.0, panels },
+            3 | 5 | 6 | 9 => Self { width: Width::Page, across: 3, height: 36.0, panels },
+            _ => Self { width: Width::Page, across: 4, height: 28.0, panels },
+        }
+    }
+
     /// Writes `NAME.svg`, `NAME.png` and `NAME.pdf` into a folder, made if need be.
     pub fn save(&self, folder: &Path, name: &str) -> Result<(), PlotError> {
         create_folder(folder)?;
         let tree = self.tree()?;
         write_file(&folder.join(format!("{name}.svg")), svg(&tree).as_bytes())?;
-        write_file(&folder.join(format!("{name}.png")), &png(&tree)?)?;
+        write_file(&folder.join(format!("{name}.png")), &png(&tree, PNG_DPI)?)?;
         write_file(&folder.join(format!("{name}.pdf")), &pdf(&tree)?)?;
         Ok(())
     }
@@ -83,83 +92,86 @@ impl Figure {
         Ok(svg(&self.tree()?))
     }
 
-    fn tree(&self) -> Result<usvg::Tree, PlotError> {
-        let options = usvg::Options { fontdb: FONTS.clone(), ..usvg::Options::default() };
-        let drawing = self.draw()?;
-        usvg::Tree::from_str(&drawing, &options)
-            .map_err(|e| PlotError::Convert { format: "SVG", reason: e.to_string() })
-    }
-
-    /// The drawing as plotters makes it, sized in millimetres.
-    fn draw(&self) -> Result<String, PlotError> {
-        LazyLock::force(&FONTS);
+    pub(super) fn tree(&self) -> Result<usvg::Tree, PlotError> {
         let legend = self.legend();
-        let height =
-            self.panel_height * self.panels.len() as f64 + LEGEND_LINE * legend.len() as f64 + 4.0;
-        let size = (units(COLUMN_MM).unsigned_abs(), units(height).unsigned_abs());
-        let mut drawing = String::new();
-        {
-            let area = SVGBackend::with_string(&mut drawing, size).into_drawing_area();
-            area.fill(&WHITE)?;
-            let (top, body) = area.split_vertically(units(LEGEND_LINE * legend.len() as f64));
-            draw_legend(&top, &legend)?;
-            let left = self.panels.iter().map(Panel::left).fold(0.0, f64::max);
-            let mut rest = body;
-            for (i, panel) in self.panels.iter().enumerate() {
-                let last = i + 1 == self.panels.len();
-                let extra = if last { 4.0 } else { 0.0 };
-                let (here, below) = rest.split_vertically(units(self.panel_height + extra));
-                panel.draw(&here, left, last)?;
-                rest = below;
-            }
-            area.present()?;
-        }
-        let (w, h) = size;
-        let in_units = format!("width=\"{w}\" height=\"{h}\"");
-        let in_mm = format!("width=\"{COLUMN_MM}mm\" height=\"{height}mm\"");
-        Ok(drawing.replacen(&in_units, &in_mm, 1))
+        let top = LINE * legend.len() as f64 + if legend.is_empty() { 0.0 } else { 0.8 };
+        let (frames, height) = self.frames(top);
+        Sheet::drawn(self.width.mm(), height, |sheet| {
+            draw_legend(sheet, &legend)?;
+            let mut panels = self.panels.iter().zip(&frames);
+            panels.try_for_each(|(panel, frame)| panel.draw(sheet, frame))
+        })
     }
 
-    /// The named lines of all panels, each name once, in rows that fit the width, each with its place
-    /// \[units\].
-    fn legend(&self) -> Vec<Vec<(i32, &Line)>> {
-        LazyLock::force(&FONTS);
-        let mut rows: Vec<Vec<(i32, &Line)>> = Vec::new();
-        let mut x = i32::MAX;
-        let mut named = HashSet::from([""]);
-        for line in self.panels.iter().flat_map(|p| &p.lines).filter(|l| named.insert(&l.name)) {
-            let width = units(4.6) + text_width(&line.name);
-            if x.saturating_add(width) > units(COLUMN_MM) {
+    /// Where the panels are, below `top`, and the height of all \[mm\].
+    fn frames(&self, top: f64) -> (Vec<Frame>, f64) {
+        let (panels, across) = (&self.panels, self.across.max(1));
+        let one =
+            |label: fn(&Panel) -> &str| panels.windows(2).all(|w| label(&w[0]) == label(&w[1]));
+        let (one_x, one_y) = (one(|p| &p.x.label), one(|p| &p.y.label));
+        // Without a panel below, or with one whose axis is another, it shows its own label.
+        let x_label = |i: usize| !one_x || i + across >= panels.len();
+        let y_label = |i: usize| !one_y || i % across == 0;
+        let mut lefts = vec![0.0; across];
+        for (i, panel) in panels.iter().enumerate() {
+            lefts[i % across] = f64::max(lefts[i % across], panel.left(self.height, y_label(i)));
+        }
+        let beside = panels.iter().map(Panel::beside).fold(0.0, f64::max);
+        let free = self.width.mm() - lefts.iter().sum::<f64>() - beside * across as f64;
+        let width = (free / across as f64).max(1.0);
+        let mut frames = Vec::new();
+        let mut y = top;
+        for (r, row) in panels.chunks(across).enumerate() {
+            let above = row.iter().map(Panel::above).fold(0.0, f64::max);
+            let mut x = 0.0;
+            let mut below = 0.0;
+            for (c, panel) in row.iter().enumerate() {
+                let i = r * across + c;
+                let left = x + lefts[c];
+                let (top, bottom) = (y + above, y + above + self.height);
+                let (x_label, y_label) = (x_label(i), y_label(i));
+                frames.push(Frame { left, top, right: left + width, bottom, x_label, y_label });
+                below = f64::max(below, panel.below(x_label));
+                x = left + width + beside;
+            }
+            y += above + self.height + below;
+        }
+        (frames, y)
+    }
+
+    /// What the marks of all panels are called, each name once, in rows that fit the width, each with its
+    /// place \[mm\].
+    fn legend(&self) -> Vec<Vec<(f64, String, Stroke)>> {
+        let width = self.width.mm();
+        let mut rows: Vec<Vec<(f64, String, Stroke)>> = Vec::new();
+        let mut x = f64::INFINITY;
+        let mut named = HashSet::new();
+        let marks = self.panels.iter().flat_map(|panel| &panel.marks);
+        for (name, stroke) in marks.filter_map(|m| m.legend()).filter(|(n, _)| named.insert(*n)) {
+            let name = fitted(name, width - SAMPLE - BEHIND_SAMPLE - 2.0);
+            let needed = SAMPLE + BEHIND_SAMPLE + text_width(&name, TEXT_PT);
+            if x + needed > width {
                 rows.push(Vec::new());
-                x = units(1.5);
+                x = 1.0;
             }
             if let Some(row) = rows.last_mut() {
-                row.push((x, line));
+                row.push((x, name, *stroke));
             }
-            x += width + units(1.6);
+            x += needed + BEHIND_NAME;
         }
         rows
     }
 }
 
-fn draw_legend(
-    area: &DrawingArea<SVGBackend<'_>, Shift>,
-    rows: &[Vec<(i32, &Line)>],
-) -> Result<(), PlotError> {
-    let text = (FONT, text_size()).into_font().color(&INK);
-    let text = text.pos(Pos::new(HPos::Left, VPos::Center));
+fn draw_legend(sheet: &Sheet<'_>, rows: &[Vec<(f64, String, Stroke)>]) -> Result<(), PlotError> {
     for (i, row) in rows.iter().enumerate() {
-        let y = units(LEGEND_LINE * (i as f64 + 0.6));
-        for (x, line) in row {
-            let sample = [(*x, y), (x + units(4.0), y)];
-            match line.stroke.dash {
-                None => area.draw(&PathElement::new(sample, line.stroke.shape()))?,
-                Some((dash, gap)) => {
-                    let style = line.stroke.shape();
-                    area.draw(&DashedPathElement::new(sample, units(dash), units(gap), style))?;
-                }
+        let y = LINE * (i as f64 + 0.6);
+        for (x, name, stroke) in row {
+            if stroke.width > 0.0 {
+                sheet.line(&[[*x, y], [x + SAMPLE, y]], stroke)?;
             }
-            area.draw_text(&line.name, &text, (x + units(4.6), y))?;
+            sheet.marker([x + 0.5 * SAMPLE, y], stroke)?;
+            sheet.text(name, [x + SAMPLE + BEHIND_SAMPLE, y], Anchor::Left)?;
         }
     }
     Ok(())
@@ -174,15 +186,28 @@ fn svg(tree: &usvg::Tree) -> String {
     })
 }
 
-fn png(tree: &usvg::Tree) -> Result<Vec<u8>, PlotError> {
+pub(super) fn png(tree: &usvg::Tree, dpi: f32) -> Result<Vec<u8>, PlotError> {
     let error = |reason: String| PlotError::Convert { format: "PNG", reason };
-    let scale = PNG_DPI / SVG_DPI;
-    let pixels = |length: f32| (length * scale).ceil() as u32;
-    let size = tree.size();
-    let mut pixels = tiny_skia::Pixmap::new(pixels(size.width()), pixels(size.height()))
+    let scale = dpi / SVG_DPI;
+    let length = |length: f32| (length * scale).ceil() as u32;
+    let (width, height) = (length(tree.size().width()), length(tree.size().height()));
+    let mut pixels = tiny_skia::Pixmap::new(width, height)
         .ok_or_else(|| error("the figure is too large".to_owned()))?;
     resvg::render(tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|e| error(e.to_string()))
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    let per_metre = (dpi / 0.0254).round() as u32;
+    let unit = png::Unit::Meter;
+    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit }));
+    // The paper is opaque, so there is nothing to see through.
+    let colours: Vec<u8> =
+        pixels.data().chunks_exact(4).flat_map(|rgba| &rgba[..3]).copied().collect();
+    encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(&colours))
+        .map_err(|e| error(e.to_string()))?;
+    Ok(bytes)
 }
 
 fn pdf(tree: &usvg::Tree) -> Result<Vec<u8>, PlotError> {

@@ -1,13 +1,15 @@
 //! Joint angles over time: the paper's Figure 4.
 
+use super::axis::Axis;
 use super::figure::Figure;
-use super::panel::{Axis, Line, MARGIN, Panel, extent};
+use super::marks::{Line, Mark};
+use super::panel::{MARGIN, Panel, extent};
 use super::style::Stroke;
 use crate::problem::Motion;
 
 /// Joint angles over time.
 pub fn joint_angles(motion: &Motion) -> Figure {
-    Figure { panels: vec![joint_panel(motion, 0, "joint angle θ [°]", &[])], panel_height: 54.0 }
+    Figure::column(vec![joint_panel(motion, 0, "joint angle θ [°]", &[])], 44.0)
 }
 
 /// One derivative of every joint's angle over time \[°, s\], with limits where there are any.
@@ -20,13 +22,9 @@ pub(super) fn joint_panel(motion: &Motion, order: usize, label: &str, limits: &[
     }
     for limit in limits.iter().flat_map(|limit| [-limit, *limit]) {
         let name = if limits.first() == Some(&-limit) { "limit" } else { "" };
-        lines.push(Line::level(name, limit, end));
+        lines.push(Line::level(name, limit, [0.0, end]));
     }
-    Panel {
-        title: String::new(),
-        x: Axis::linear("time t [s]", [0.0, end], 0.0),
-        y: Axis::linear(label, extent(&lines), MARGIN),
-        bands: Vec::new(),
-        lines,
-    }
+    let x = Axis::linear("time t [s]", [0.0, end], 0.0);
+    let y = Axis::linear(label, extent(&lines), MARGIN);
+    Panel::new(x, y, lines.into_iter().map(Mark::Line).collect())
 }

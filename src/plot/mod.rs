@@ -1,28 +1,49 @@
 //! Charts: one drawing, written as SVG, PNG and PDF.
 
+mod axis;
 mod base_attitude;
 mod chart;
+mod charts;
+mod comparison;
 mod convergence;
+mod critical_difference;
+mod curves;
 mod derivatives;
 mod figure;
 mod joint_angles;
+mod looks;
+mod marks;
 mod panel;
+mod running_times;
+mod sheet;
 mod style;
+mod sweeps;
+#[cfg(test)]
+mod tests;
 
 use std::path::Path;
 
 pub use base_attitude::base_attitude;
 pub use chart::Chart;
+pub use charts::{NAMES, charts};
+pub use comparison::{effect_sizes, final_costs};
 pub use convergence::convergence;
+pub use critical_difference::critical_difference;
 pub use derivatives::derivatives;
 pub use figure::{Figure, PlotError};
 pub use joint_angles::joint_angles;
+pub use looks::Looks;
+pub use running_times::{expected_running_time, profiles, running_time_distribution};
+pub use sweeps::{Swept, pareto, sweep};
 
 use crate::problem::Motion;
 use crate::task::Task;
 
 /// Intervals at which a motion is sampled for its charts.
 pub const SAMPLES: usize = 600;
+
+/// The names of the charts of a motion.
+pub const MOTION_NAMES: [&str; 3] = ["joint-angles", "joint-derivatives", "base-attitude"];
 
 /// The paper's Figures 4, 5 and 6 for a motion; their table is `motion`.
 pub fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {

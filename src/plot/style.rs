@@ -1,31 +1,41 @@
-//! How charts look in print: one journal column wide, 8-point text, colours that a colour-blind
-//! reader can tell apart, dashes that a grey copy keeps apart.
+//! How charts look in print: one or two journal columns wide, 7.5-point text, colours that a
+//! colour-blind reader can tell apart, dashes and markers that a grey copy keeps apart.
 
-use plotters::style::{Color as _, IntoFont as _, RGBColor, ShapeStyle};
+use plotters::style::RGBColor;
 
-/// Drawing units a millimetre. Plotters draws on whole units; this many make curves smooth.
-pub(super) const UNITS_PER_MM: f64 = 40.0;
+/// Width of a figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Width {
+    /// One journal column.
+    Column,
+    /// Two journal columns, the page.
+    Page,
+}
 
-/// Width of one journal column \[mm\].
-pub(super) const COLUMN_MM: f64 = 88.0;
-
-/// The family name of the embedded font.
-pub(super) const FONT: &str = "Noto Sans";
+impl Width {
+    /// In millimetres.
+    pub(super) fn mm(self) -> f64 {
+        match self {
+            Self::Column => 88.0,
+            Self::Page => 180.0,
+        }
+    }
+}
 
 /// Text size \[pt\].
-const TEXT_PT: f64 = 7.5;
-
-/// Millimetres a point.
-const MM_PER_PT: f64 = 25.4 / 72.0;
+pub(super) const TEXT_PT: f64 = 7.5;
 
 /// Ink for axes and text.
 pub(super) const INK: RGBColor = RGBColor(38, 38, 38);
-
 /// Grid lines.
 pub(super) const GRID: RGBColor = RGBColor(222, 222, 222);
+/// Curves in the background.
+pub(super) const FAINT: RGBColor = RGBColor(200, 200, 200);
+/// What lies under everything.
+pub(super) const PAPER: RGBColor = RGBColor(255, 255, 255);
 
-/// Okabe and Ito's colours without the yellow, which is too light for a line on white; black last.
-const COLOURS: [RGBColor; 7] = [
+/// Okabe and Ito's colours without the yellow, which is too light for a line on white; black and grey last.
+pub(super) const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -33,52 +43,110 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
     RGBColor(0, 0, 0),
+    RGBColor(140, 140, 140),
 ];
 
-/// Dash and gap \[mm\]; nothing is a solid line.
-const DASHES: [Option<(f64, f64)>; 3] = [None, Some((2.0, 0.8)), Some((0.7, 0.6))];
+/// Lengths of dashes and gaps, in turn \[mm\]; none is a solid line.
+pub(super) type Dashes = &'static [f64];
 
-/// Millimetres in drawing units.
-pub(super) fn units(mm: f64) -> i32 {
-    (mm * UNITS_PER_MM).round() as i32
+/// Solid, dashed, dotted, dash-dotted.
+pub(super) const DASHES: [Dashes; 4] = [&[], &[2.0, 0.8], &[0.6, 0.6], &[2.4, 0.7, 0.6, 0.7]];
+
+/// The shape of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Marker {
+    Circle,
+    Square,
+    Diamond,
+    Up,
+    Down,
+    Plus,
+    Cross,
+    Star,
 }
 
-/// Text height in plotters' measure, which is 1.24 times the font size.
-pub(super) fn text_size() -> f64 {
-    TEXT_PT * MM_PER_PT * UNITS_PER_MM * 1.24
+impl Marker {
+    pub(super) const ALL: [Self; 8] = [
+        Self::Circle,
+        Self::Square,
+        Self::Up,
+        Self::Diamond,
+        Self::Down,
+        Self::Plus,
+        Self::Cross,
+        Self::Star,
+    ];
+
+    /// Corners of the shape, in units of its radius.
+    pub(super) fn outline(self) -> Vec<[f64; 2]> {
+        let on_circle = |count: usize, first_deg: f64, radius: &dyn Fn(usize) -> f64| {
+            let corner = |i: usize| {
+                let angle = (first_deg + 360.0 * i as f64 / count as f64).to_radians();
+                [radius(i) * angle.cos(), radius(i) * angle.sin()]
+            };
+            (0..count).map(corner).collect::<Vec<_>>()
+        };
+        // Three corners of each of the four arms' notches, the inner one nearer.
+        let cross = |turn_deg: f64| {
+            let arms =
+                (0..4).flat_map(|arm| [(-18.0, 1.1), (18.0, 1.1), (45.0, 0.48)].map(|c| (arm, c)));
+            let corner = |(arm, (angle, radius)): (i32, (f64, f64))| {
+                let angle = (turn_deg + 90.0 * f64::from(arm) + angle).to_radians();
+                [radius * angle.cos(), radius * angle.sin()]
+            };
+            arms.map(corner).collect::<Vec<_>>()
+        };
+        match self {
+            Self::Circle => on_circle(20, 0.0, &|_| 0.95),
+            Self::Square => on_circle(4, 45.0, &|_| 1.2),
+            Self::Diamond => on_circle(4, 0.0, &|_| 1.25),
+            Self::Up => on_circle(3, -90.0, &|_| 1.25),
+            Self::Down => on_circle(3, 90.0, &|_| 1.25),
+            Self::Plus => cross(0.0),
+            Self::Cross => cross(45.0),
+            Self::Star => on_circle(10, -90.0, &|i| if i % 2 == 0 { 1.35 } else { 0.55 }),
+        }
+    }
 }
 
-/// Width of a text as drawn. Plotters measures at a font size that makes ascent and descent together
-/// as high as its text size, 1.362 em for this font; it draws at the size divided by 1.24.
-pub(super) fn text_width(text: &str) -> i32 {
-    let font = (FONT, text_size()).into_font();
-    let measured = font.box_size(text).map_or(0.0, |(width, _)| f64::from(width));
-    (measured * 1.362 / 1.24).round() as i32
-}
-
-/// How one line is drawn.
-#[derive(Debug, Clone, Copy)]
+/// How one line and its points are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stroke {
     pub(super) colour: RGBColor,
     /// Width \[mm\].
     pub(super) width: f64,
-    /// Dash and gap \[mm\].
-    pub(super) dash: Option<(f64, f64)>,
+    pub(super) dashes: Dashes,
+    /// The shape of its points, unless it is a line alone.
+    pub(super) marker: Option<Marker>,
+    /// Whether its points are outlines.
+    pub(super) hollow: bool,
 }
 
 impl Stroke {
-    /// The stroke of the `index`-th line of a chart.
+    /// A plain solid line.
+    pub(super) const fn plain(colour: RGBColor, width: f64) -> Self {
+        Self { colour, width, dashes: &[], marker: None, hollow: false }
+    }
+
+    /// The stroke of the `index`-th line of a chart whose lines are no optimisers.
     pub(super) fn of(index: usize) -> Self {
-        let colour = COLOURS[index % COLOURS.len()];
-        Self { colour, width: 0.32, dash: DASHES[index % DASHES.len()] }
+        let colour = COLOURS[index % 7];
+        Self { dashes: DASHES[index % DASHES.len()], ..Self::plain(colour, 0.32) }
+    }
+
+    /// The same with points.
+    pub(super) fn with_marker(self, marker: Marker) -> Self {
+        Self { marker: Some(marker), ..self }
     }
 
     /// A thin line that refers to something, such as a limit.
     pub(super) fn reference() -> Self {
-        Self { colour: INK, width: 0.2, dash: Some((0.6, 0.5)) }
+        Self { dashes: DASHES[2], ..Self::plain(INK, 0.2) }
     }
+}
 
-    pub(super) fn shape(&self) -> ShapeStyle {
-        self.colour.stroke_width(units(self.width).unsigned_abs())
-    }
+/// A colour on the way to another, by a share.
+pub(super) fn mix(from: RGBColor, to: RGBColor, share: f64) -> RGBColor {
+    let part = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a))).round() as u8;
+    RGBColor(part(from.0, to.0), part(from.1, to.1), part(from.2, to.2))
 }

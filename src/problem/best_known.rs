@@ -35,6 +35,9 @@ pub struct BestKnown {
     pub j: f64,
     /// Duration \[s\].
     pub t_f: f64,
+    /// The least cost found over motions of any shape, where somebody looked for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free_form_j: Option<f64>,
     /// Bump coefficients, one row a joint.
     pub coefficients: Vec<Vec<f64>>,
     /// The command that found it.
@@ -85,6 +88,7 @@ impl BestKnown {
             terms,
             j: significant::<10>(assessment.cost),
             t_f: assessment.duration,
+            free_form_j: None,
             coefficients: coefficients.chunks_exact(terms).map(<[f64]>::to_vec).collect(),
             found_by,
             date: chrono::Utc::now().date_naive().to_string(),

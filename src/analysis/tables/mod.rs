@@ -5,11 +5,14 @@ mod distribution;
 mod feasibility;
 mod fixed_budget;
 mod fixed_target;
+mod motion;
 mod pairs;
 mod profiles;
 mod ranks;
 
 use polars::prelude::*;
+
+pub use motion::motion_table;
 
 use super::runs::groups;
 use super::statistics::Bootstrap;
@@ -50,7 +53,7 @@ struct Field<'a> {
 }
 
 /// The names that tables may have.
-pub const NAMES: [&str; 14] = [
+pub const NAMES: [&str; 15] = [
     "summary",
     "best",
     "pareto",
@@ -65,6 +68,7 @@ pub const NAMES: [&str; 14] = [
     "running-time-distribution",
     "performance-profiles",
     "data-profiles",
+    "motion",
 ];
 
 /// Every table that the runs of a plan give.

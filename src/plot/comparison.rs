@@ -1,0 +1,132 @@
+//! Which optimiser ends lower: distributions of final costs, and every two beside each other.
+
+use polars::prelude::DataFrame;
+
+use super::axis::Axis;
+use super::curves::{MOST_PANELS, range, reals, texts};
+use super::figure::{Figure, PlotError};
+use super::looks::Looks;
+use super::marks::Mark;
+use super::panel::{MARGIN, Panel};
+use super::style::{COLOURS, GRID, PAPER, Stroke, Width, mix};
+use crate::analysis::statistics::quantile;
+
+/// Final costs below are drawn at the axis's lower end.
+const LOWEST: f64 = 1e-10;
+/// Most runs of a box that are drawn one by one.
+const MOST_POINTS: usize = 30;
+/// Costs further apart than this have a logarithmic axis.
+const WIDE: f64 = 8.0;
+/// Height of an optimiser's line \[mm\].
+const ROW: f64 = 4.6;
+
+/// The final costs of all runs, from the table `runs`: quartiles as a box, least and largest as whiskers,
+/// and single runs where they are few.
+pub fn final_costs(
+    frame: &DataFrame,
+    looks: &Looks,
+    symbol: &str,
+) -> Result<Option<Figure>, PlotError> {
+    let (groups, optimisers) = (texts(frame, "group")?, texts(frame, "optimiser")?);
+    let costs = reals(frame, &format!("best {symbol}"))?;
+    let mut panels: Vec<&String> = groups.iter().collect();
+    panels.sort();
+    panels.dedup();
+    panels.sort_by_key(|group| groups.iter().position(|g| g == *group));
+    if panels.len() > MOST_PANELS {
+        return Ok(None);
+    }
+    let labels: Vec<&str> = looks.labels().collect();
+    let panel = |group: &String| {
+        let of = |label: &str| -> Vec<f64> {
+            let rows = (0..costs.len()).filter(|&i| groups[i] == *group && optimisers[i] == label);
+            let mut costs: Vec<f64> = rows.map(|i| costs[i]).collect();
+            costs.sort_by(f64::total_cmp);
+            costs
+        };
+        let marks = labels.iter().enumerate();
+        let marks =
+            marks.flat_map(|(row, label)| boxed(row as f64, &of(label), looks.stroke(label)));
+        let all = (0..costs.len()).filter(|&i| groups[i] == *group).map(|i| costs[i]);
+        let [low, high] = range(all, LOWEST);
+        let label = format!("final {symbol}");
+        let x = if high / low > WIDE {
+            Axis::logarithmic(&label, [low, high], MARGIN)
+        } else {
+            Axis::linear(&label, [low, high], MARGIN)
+        };
+        let names = labels.iter().map(|&label| label.to_owned()).collect();
+        Panel::new(x, Axis::names("", names).reversed(), marks.collect()).titled(group)
+    };
+    let mut figure = Figure::grid(panels.into_iter().map(panel).collect());
+    figure.height = ROW * labels.len() as f64;
+    if labels.len() > 12 && figure.panels.len() > 1 {
+        figure.across = figure.across.min(3);
+    }
+    Ok(Some(figure))
+}
+
+/// A box, with single runs where they are few; costs in order.
+fn boxed(row: f64, costs: &[f64], stroke: Stroke) -> Vec<Mark> {
+    if costs.is_empty() {
+        return Vec::new();
+    }
+    let five = [0.0, 0.25, 0.5, 0.75, 1.0].map(|q| quantile(costs, q).max(LOWEST));
+    let mut marks = vec![Mark::Box { stroke, height: row, five }];
+    if costs.len() <= MOST_POINTS {
+        let aside = |i: usize| 0.18 * ((i as f64 * 0.618).fract() * 2.0 - 1.0);
+        let points = costs.iter().enumerate().map(|(i, cost)| [cost.max(LOWEST), row + aside(i)]);
+        let stroke = Stroke { hollow: true, ..stroke };
+        marks.push(Mark::Points { name: String::new(), stroke, points: points.collect() });
+    }
+    marks
+}
+
+/// Vargha and Delaney's A12 of every two optimisers as a heat map, from the table `pairs`, in the order of the
+/// table `ranks`: the probability that a run of the row's ends lower than one of the column's. A star marks pairs that
+/// differ significantly; pairs that do not are pale.
+pub fn effect_sizes(pairs: &DataFrame, ranks: &DataFrame) -> Result<Figure, PlotError> {
+    let order = texts(ranks, "optimiser")?;
+    let place = |label: &String| order.iter().position(|name| name == label).unwrap_or_default();
+    let (first, second) = (texts(pairs, "first")?, texts(pairs, "second")?);
+    let (effects, p) = (reals(pairs, "A12")?, reals(pairs, "p Holm")?);
+    let count = order.len();
+    let points = if count > 8 { 5.5 } else { 7.0 };
+    let mut marks: Vec<Mark> =
+        (0..count).map(|i| cell(i, i, GRID, String::new(), points)).collect();
+    for (i, (first, second)) in first.iter().zip(&second).enumerate() {
+        let (row, column) = (place(first), place(second));
+        for (row, column, effect) in [(row, column, effects[i]), (column, row, 1.0 - effects[i])] {
+            let is_significant = p[i] <= 0.05;
+            let star = if is_significant { "*" } else { "" };
+            let text = format!("{effect:.2}{star}");
+            // Where there is little room, 0.93 is .93.
+            let short = text.strip_prefix('0').filter(|_| count > 8).map(ToOwned::to_owned);
+            let text = short.unwrap_or(text);
+            marks.push(cell(row, column, shade(effect, is_significant), text, points));
+        }
+    }
+    let numbers = (1..=count).map(|n| n.to_string()).collect();
+    let names = order.iter().enumerate().map(|(i, name)| format!("{name}  {}", i + 1)).collect();
+    let x = Axis::names("the row's runs end lower than the column's", numbers);
+    let panel = Panel::new(x, Axis::names("", names).reversed(), marks);
+    let width = if count > 8 { Width::Page } else { Width::Column };
+    Ok(Figure { width, across: 1, height: ROW * count as f64, panels: vec![panel] })
+}
+
+fn cell(
+    row: usize,
+    column: usize,
+    colour: plotters::style::RGBColor,
+    text: String,
+    points: f64,
+) -> Mark {
+    Mark::Cell { at: [column as f64, row as f64], colour, text, points }
+}
+
+/// Blue where the row is lower, orange where the column is.
+fn shade(effect: f64, is_significant: bool) -> plotters::style::RGBColor {
+    let end = if effect > 0.5 { COLOURS[0] } else { COLOURS[1] };
+    let strength = (2.0 * effect - 1.0).abs() * if is_significant { 0.85 } else { 0.35 };
+    mix(mix(PAPER, GRID, 0.3), end, strength)
+}

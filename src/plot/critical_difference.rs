@@ -1,0 +1,145 @@
+//! The critical-difference diagram: mean ranks, and who cannot be told apart.
+
+use polars::prelude::DataFrame;
+
+use super::axis::Axis;
+use super::curves::{reals, texts};
+use super::figure::{Figure, PlotError};
+use super::looks::Looks;
+use super::marks::{Line, Mark};
+use super::panel::Panel;
+use super::sheet::{Anchor, text_width};
+use super::style::{INK, Stroke, TEXT_PT, Width};
+
+/// Distance between lines of labels, and between bars \[mm\].
+const ROW: f64 = 4.2;
+const BAR: f64 = 1.6;
+/// Height of the axis of ranks below the upper end \[mm\].
+const AXIS: f64 = 8.5;
+/// Room between the axis and where a label's line ends, and the shortest axis in a column \[mm\].
+const GAP: f64 = 1.2;
+const SHORTEST: f64 = 26.0;
+
+/// Everything in millimetres.
+struct Diagram {
+    /// Where ranks 1 and the last are.
+    from: f64,
+    to: f64,
+    count: usize,
+    marks: Vec<Mark>,
+}
+
+impl Diagram {
+    fn x(&self, rank: f64) -> f64 {
+        self.from + (self.to - self.from) * (rank - 1.0) / (self.count as f64 - 1.0).max(1.0)
+    }
+
+    fn line(&mut self, points: Vec<[f64; 2]>, stroke: Stroke) {
+        self.marks.push(Mark::Line(Line::new("", stroke, points)));
+    }
+
+    fn label(&mut self, at: [f64; 2], text: String, anchor: Anchor) {
+        self.marks.push(Mark::Label { at, text, anchor });
+    }
+
+    fn axis(&mut self) {
+        let ink = Stroke::plain(INK, 0.25);
+        self.line(vec![[self.from, AXIS], [self.to, AXIS]], ink);
+        let every = self.count.div_ceil(12);
+        for rank in (1..=self.count).step_by(every) {
+            let x = self.x(rank as f64);
+            self.line(vec![[x, AXIS], [x, AXIS - 1.0]], ink);
+            self.label([x, AXIS - 2.8], rank.to_string(), Anchor::Centre);
+        }
+    }
+}
+
+/// Mean ranks on an axis, 1 being the best; a bar joins optimisers that do not differ significantly. From the tables `ranks` and
+/// `friedman`; the bar on top is Nemenyi's critical difference.
+///
+/// Demšar (2006), J. Mach. Learn. Res. 7, 1–30.
+pub fn critical_difference(
+    ranks: &DataFrame,
+    friedman: &DataFrame,
+    looks: &Looks,
+) -> Result<Figure, PlotError> {
+    let (labels, means) = (texts(ranks, "optimiser")?, reals(ranks, "mean rank")?);
+    let cliques = texts(ranks, "cliques")?;
+    let difference = reals(friedman, "critical difference")?.first().copied().unwrap_or(f64::NAN);
+    let count = labels.len();
+    let half = count.div_ceil(2);
+    let told: Vec<String> =
+        labels.iter().zip(&means).map(|(label, mean)| format!("{label} ({mean:.2})")).collect();
+    let widest = |texts: &[String]| {
+        texts.iter().map(|t| text_width(t, TEXT_PT)).fold(0.0, f64::max) + 2.0 * GAP + 1.0
+    };
+    let (left, right) = (widest(&told[..half]), widest(&told[half..]));
+    let fits = Width::Column.mm() - left - right >= SHORTEST;
+    let width = if fits { Width::Column } else { Width::Page };
+    let mut diagram = Diagram { from: left, to: width.mm() - right, count, marks: Vec::new() };
+    diagram.axis();
+    let length = diagram.x(1.0 + difference) - diagram.x(1.0);
+    let told_difference = format!("Nemenyi's critical difference {difference:.2}");
+    if length.is_finite() && length <= width.mm() - 1.0 - left {
+        let end = left + length;
+        let ink = Stroke::plain(INK, 0.25);
+        diagram.line(vec![[left, 3.8], [end, 3.8]], ink);
+        for x in [left, end] {
+            diagram.line(vec![[x, 3.3], [x, 4.3]], ink);
+        }
+    }
+    diagram.label([left - GAP, 1.6], told_difference, Anchor::Left);
+    let bars = bars(&mut diagram, &means, &cliques);
+    let first = AXIS + BAR * (bars as f64 + 1.0) + 1.6;
+    for (i, text) in told.into_iter().enumerate() {
+        let is_left = i < half;
+        let row = if is_left { i } else { count - 1 - i };
+        let (x, y) = (diagram.x(means[i]), first + ROW * row as f64);
+        let (end, anchor) = if is_left {
+            (left - GAP, Anchor::Right)
+        } else {
+            (width.mm() - right + GAP, Anchor::Left)
+        };
+        let stroke = Stroke { width: 0.25, marker: None, ..looks.stroke(&labels[i]) };
+        diagram.line(vec![[x, AXIS], [x, y], [end, y]], stroke);
+        let point = Stroke { hollow: false, ..looks.stroke(&labels[i]) };
+        diagram.marks.push(Mark::Points {
+            name: String::new(),
+            stroke: point,
+            points: vec![[x, AXIS]],
+        });
+        diagram.label([end, y], text, anchor);
+    }
+    let height = first + ROW * half as f64 - 0.5 * ROW;
+    let axis = |length: f64| Axis::linear("", [0.0, length], 0.0);
+    // A bare panel has half a millimetre of room on every side.
+    let panel = Panel::bare(axis(width.mm()), axis(height).reversed(), diagram.marks);
+    Ok(Figure { width, across: 1, height, panels: vec![panel] })
+}
+
+/// Draws a bar for each clique and tells how many lines of bars there are.
+fn bars(diagram: &mut Diagram, means: &[f64], cliques: &[String]) -> usize {
+    let mut ends: Vec<(String, [f64; 2])> = Vec::new();
+    for (mean, of) in means.iter().zip(cliques) {
+        for clique in of.split_whitespace() {
+            match ends.iter_mut().find(|(name, _)| name == clique) {
+                Some((_, ends)) => *ends = [ends[0].min(*mean), ends[1].max(*mean)],
+                None => ends.push((clique.to_owned(), [*mean; 2])),
+            }
+        }
+    }
+    // Each bar goes into the first line where it has room.
+    let mut lines: Vec<f64> = Vec::new();
+    for (_, [low, high]) in ends {
+        let (from, to) = (diagram.x(low) - 0.8, diagram.x(high) + 0.8);
+        let line = lines.iter().position(|&end| end + 1.5 < from).unwrap_or(lines.len());
+        if line == lines.len() {
+            lines.push(to);
+        } else {
+            lines[line] = to;
+        }
+        let y = AXIS + 2.0 + BAR * line as f64;
+        diagram.line(vec![[from, y], [to, y]], Stroke::plain(INK, 0.8));
+    }
+    lines.len()
+}
