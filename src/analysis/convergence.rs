@@ -1,5 +1,7 @@
 //! Best cost against evaluations, over the seeds.
 
+use rayon::prelude::*;
+
 use super::runs::{Run, groups};
 use super::statistics::quartiles;
 use crate::experiment::Plan;
@@ -35,7 +37,7 @@ fn curve(plan: &Plan, group: &[&Run]) -> Curve {
         (0..POINTS).map(|i| (last * i as f64 / (POINTS - 1) as f64).exp().round()).collect();
     evaluations.dedup();
     let quartiles = evaluations
-        .iter()
+        .par_iter()
         .map(|&place| quartiles(group.iter().map(|run| run.best_at(place as u64))));
     Curve {
         optimiser: plan.optimisers[group[0].optimiser].label.clone(),

@@ -2,6 +2,8 @@
 
 mod convergence;
 mod format;
+#[cfg(test)]
+mod handmade;
 mod runs;
 mod standing;
 pub mod statistics;

@@ -15,6 +15,11 @@ const RESTARTS: usize = 50;
 /// Points of a curve.
 const POINTS: usize = 100;
 
+/// By how much the targets lie above the least cost, the largest first.
+pub(super) fn differences() -> impl Iterator<Item = f64> {
+    (0..TARGETS).map(|i| 10_f64.powf(2.0 - f64::from(i) / 5.0))
+}
+
 /// What a group's runs say about all targets, in evaluations.
 #[derive(Default)]
 struct Times {
@@ -97,7 +102,7 @@ fn times_of(field: &Field<'_>, group: &[&Run]) -> Times {
     let mut rng = Rng::new(1);
     for runs in by_instance.chunk_by(|a, b| a.instance == b.instance) {
         let least = field.targets.least[runs[0].instance];
-        for target in (0..TARGETS).map(|i| least + 10_f64.powf(2.0 - f64::from(i) / 5.0)) {
+        for target in differences().map(|difference| least + difference) {
             let trials: Vec<Trial> = runs.iter().map(|run| trial(run, target)).collect();
             found.runs.extend(times(&trials));
             found.restarted.extend(simulated_restarts(&trials, RESTARTS, |n| rng.index(n)));

@@ -1,7 +1,9 @@
 //! The tables of a report, one file a table.
 
 mod best_motions;
+mod convergence;
 mod distribution;
+mod expected_running_time;
 mod feasibility;
 mod fixed_budget;
 mod fixed_target;
@@ -9,6 +11,7 @@ mod motion;
 mod pairs;
 mod profiles;
 mod ranks;
+mod runs;
 
 use polars::prelude::*;
 
@@ -53,7 +56,7 @@ struct Field<'a> {
 }
 
 /// The names that tables may have.
-pub const NAMES: [&str; 15] = [
+pub const NAMES: [&str; 18] = [
     "summary",
     "best",
     "pareto",
@@ -65,6 +68,9 @@ pub const NAMES: [&str; 15] = [
     "ranks",
     "pairs",
     "blocks",
+    "runs",
+    "convergence",
+    "expected-running-time",
     "running-time-distribution",
     "performance-profiles",
     "data-profiles",
@@ -88,6 +94,9 @@ pub fn tables(plan: &Plan, runs: &[Run], targets: &Targets) -> PolarsResult<Vec<
         tables.push(pairs::table(&field, &blocks)?);
         tables.push(ranks::blocks_table(&field, &blocks)?);
     }
+    tables.push(runs::table(&field)?);
+    tables.push(convergence::table(&field)?);
+    tables.push(expected_running_time::table(&field)?);
     tables.push(distribution::table(&field)?);
     tables.extend(profiles::tables(&field)?);
     let (stored, planned) = (runs.len(), plan.runs.len());
