@@ -41,7 +41,7 @@
 //! | 7 | [`oracle`]: budget, counters, best so far, trace |
 //! | 6 | [`problem`]: the reorientation task in its formulations, the best motions known, test functions |
 //! | 5 | [`task`], [`attitude`] |
-//! | 4 | [`momentum`], [`trajectory`] |
+//! | 4 | [`momentum`], [`trajectory`], [`posture`] |
 //! | 3 | [`kinematics`], [`so3`] |
 //! | 2 | [`vec3`] |
 //! | 1 | [`lanes`], [`robot`] |
@@ -79,6 +79,7 @@ pub mod oracle;
 pub mod output;
 #[cfg(feature = "harness")]
 pub mod plot;
+pub mod posture;
 pub mod problem;
 pub mod robot;
 pub mod scalar;

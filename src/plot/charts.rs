@@ -81,7 +81,9 @@ impl Maker<'_> {
             );
             self.add("convergence", "Convergence", &caption, "convergence", figure);
         }
-        if let Some(frame) = self.frame("runs") {
+        // One optimiser on many instances is what sweeps are about.
+        let is_field = self.plan.optimisers.len() > 1 || self.plan.instances.len() == 1;
+        if let Some(frame) = self.frame("runs").filter(|_| is_field) {
             let figure = comparison::final_costs(frame, &self.looks, symbol)?;
             let caption = format!(
                 "Final {symbol} of all runs, certified: quartiles as a box, the least and the largest as whiskers, single \
@@ -161,13 +163,11 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// The least cost over motions of any shape, where it is known and the same for all instances.
+    /// The least cost over motions of any shape of the first instance where it is known. It does not depend on the number of
+    /// terms.
     fn free_form_bound(&self) -> Option<f64> {
-        let mut bounds = self.plan.instances.iter().map(|instance| {
-            BestKnown::of(instance.reorientation()?).and_then(|known| known.free_form_j)
-        });
-        let first = bounds.next()??;
-        bounds.all(|bound| bound.is_none_or(|bound| bound == first)).then_some(first)
+        let problems = self.plan.instances.iter().filter_map(|instance| instance.reorientation());
+        problems.filter_map(BestKnown::of).find_map(|known| known.free_form_j)
     }
 }
 

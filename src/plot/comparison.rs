@@ -17,6 +17,8 @@ const LOWEST: f64 = 1e-10;
 const MOST_POINTS: usize = 30;
 /// Costs further apart than this have a logarithmic axis.
 const WIDE: f64 = 8.0;
+/// Half the least width of an axis, as a share of the costs.
+const NARROW: f64 = 2e-3;
 /// Height of an optimiser's line \[mm\].
 const ROW: f64 = 4.6;
 
@@ -50,6 +52,8 @@ pub fn final_costs(
         let all = (0..costs.len()).filter(|&i| groups[i] == *group).map(|i| costs[i]);
         let [low, high] = range(all, LOWEST);
         let label = format!("final {symbol}");
+        // Costs that are all but the same stay so.
+        let (low, high) = (low - NARROW * low.abs(), high + NARROW * high.abs());
         let x = if high / low > WIDE {
             Axis::logarithmic(&label, [low, high], MARGIN)
         } else {

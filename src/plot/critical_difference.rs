@@ -39,7 +39,7 @@ impl Diagram {
     }
 
     fn label(&mut self, at: [f64; 2], text: String, anchor: Anchor) {
-        self.marks.push(Mark::Label { at, text, anchor });
+        self.marks.push(Mark::Label { at, text, anchor, raised: 0.0 });
     }
 
     fn axis(&mut self) {

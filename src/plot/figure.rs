@@ -111,7 +111,7 @@ impl Figure {
         let (one_x, one_y) = (one(|p| &p.x.label), one(|p| &p.y.label));
         // Without a panel below, or with one whose axis is another, it shows its own label.
         let x_label = |i: usize| !one_x || i + across >= panels.len();
-        let y_label = |i: usize| !one_y || i % across == 0;
+        let y_label = |i: usize| !one_y || i.is_multiple_of(across);
         let mut lefts = vec![0.0; across];
         for (i, panel) in panels.iter().enumerate() {
             lefts[i % across] = f64::max(lefts[i % across], panel.left(self.height, y_label(i)));

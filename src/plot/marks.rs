@@ -34,11 +34,17 @@ pub(super) enum Mark {
         text: String,
         points: f64,
     },
-    /// A text beside a point, or centred on it.
+    /// A filled polygon.
+    Area {
+        colour: RGBColor,
+        corners: Vec<[f64; 2]>,
+    },
+    /// A text beside a point or centred on it, raised by so much \[mm\].
     Label {
         at: [f64; 2],
         text: String,
         anchor: Anchor,
+        raised: f64,
     },
 }
 
@@ -159,14 +165,18 @@ impl Mark {
                 let ink = if luminance(*colour) > 0.35 { INK } else { PAPER };
                 sheet.sized_text(text, place([*x, *y]), Anchor::Centre, *points, ink)
             }
-            Self::Label { at, text, anchor } => {
+            Self::Area { colour, corners } => {
+                let corners: Vec<Place> = corners.iter().copied().map(place).collect();
+                sheet.area(&corners, *colour, 1.0)
+            }
+            Self::Label { at, text, anchor, raised } => {
                 let [x, y] = place(*at);
                 let gap = match anchor {
                     Anchor::Left => LABEL_GAP,
                     Anchor::Centre => 0.0,
                     Anchor::Right => -LABEL_GAP,
                 };
-                sheet.text(text, [x + gap, y], *anchor)
+                sheet.text(text, [x + gap, y - raised], *anchor)
             }
         }
     }

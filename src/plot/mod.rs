@@ -16,6 +16,7 @@ mod marks;
 mod panel;
 mod running_times;
 mod sheet;
+mod snapshots;
 mod style;
 mod sweeps;
 #[cfg(test)]
@@ -34,6 +35,7 @@ pub use figure::{Figure, PlotError};
 pub use joint_angles::joint_angles;
 pub use looks::Looks;
 pub use running_times::{expected_running_time, profiles, running_time_distribution};
+pub use snapshots::snapshots;
 pub use sweeps::{Swept, pareto, sweep};
 
 use crate::problem::Motion;
@@ -43,9 +45,10 @@ use crate::task::Task;
 pub const SAMPLES: usize = 600;
 
 /// The names of the charts of a motion.
-pub const MOTION_NAMES: [&str; 3] = ["joint-angles", "joint-derivatives", "base-attitude"];
+pub const MOTION_NAMES: [&str; 4] =
+    ["joint-angles", "joint-derivatives", "base-attitude", "snapshots"];
 
-/// The paper's Figures 4, 5 and 6 for a motion; their table is `motion`.
+/// The paper's Figures 4, 5 and 6 for a motion, and snapshots; their table is `motion`.
 pub fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
     let chart = |name: &str, title: &str, caption: &str, figure| Chart {
         name: name.to_owned(),
@@ -73,10 +76,17 @@ pub fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
             "ZYX Euler angles of the base over time; dotted lines are the goal's.",
             base_attitude(motion, task),
         ),
+        chart(
+            "snapshots",
+            "The arm along the motion",
+            "The robot at equal distances of time, seen along one direction of inertial space; the dotted outline is the base in \
+             its goal attitude, the orange line the way of the tool. The base's box has the base's mass and inertia.",
+            snapshots(motion, task),
+        ),
     ]
 }
 
-/// Writes the paper's Figures 4, 5 and 6 for a motion into a folder.
+/// Writes the charts of a motion into a folder.
 pub fn write_motion_figures(folder: &Path, motion: &Motion, task: &Task) -> Result<(), PlotError> {
     motion_charts(motion, task).iter().try_for_each(|chart| chart.figure.save(folder, &chart.name))
 }

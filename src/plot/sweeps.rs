@@ -141,7 +141,8 @@ pub fn sweep(
         }
         Swept::Terms => {
             let level = |j| Line::level("free-form bound", j, sweep.settings());
-            Figure::column(vec![panel(sweep.lines(1), bound.map(level), "best J", false)], 44.0)
+            let bound = bound.filter(|_| sweep.curves.len() == 1).map(level);
+            Figure::column(vec![panel(sweep.lines(1), bound, "best J", false)], 44.0)
         }
         Swept::JerkLimit => {
             let law = cube_root_law(&sweep);
@@ -165,6 +166,8 @@ fn duration() -> String {
     format!("duration {T_F} [s]")
 }
 
+/// How far the text beside a point stands above it \[mm\].
+const ABOVE_FRONT: f64 = 1.9;
 /// Shares of the axes within which points are one.
 const TOGETHER: f64 = 0.02;
 
@@ -189,7 +192,9 @@ pub fn pareto(frame: &DataFrame) -> Result<Figure, PlotError> {
         stroke: Stroke { hollow, width: 0.0, ..stroke },
         points,
     };
-    let mut marks = vec![Mark::Line(Line::new("", Stroke::reference(), front.clone()))];
+    let corner = |w: &[[f64; 2]]| [[w[0][0], w[0][1]], [w[1][0], w[0][1]], w[1]];
+    let stairs = front.windows(2).flat_map(corner).collect();
+    let mut marks = vec![Mark::Line(Line::new("", Stroke::reference(), stairs))];
     let beaten = chosen(false);
     if !beaten.is_empty() {
         marks.push(points_of("beaten by another weight", true, beaten));
@@ -206,7 +211,8 @@ pub fn pareto(frame: &DataFrame) -> Result<Figure, PlotError> {
         };
         if places.iter().all(is_free) {
             let anchor = if is_right { Anchor::Right } else { Anchor::Left };
-            marks.push(Mark::Label { at: points[cluster], text: told(&weights), anchor });
+            let text = told(&weights);
+            marks.push(Mark::Label { at: points[cluster], text, anchor, raised: ABOVE_FRONT });
         }
     }
     Ok(Figure::column(vec![Panel::new(x, y, marks)], 44.0))

@@ -15,7 +15,7 @@ use super::figure::{Figure, png};
 use super::{
     Looks, Swept, base_attitude, convergence, critical_difference, derivatives, effect_sizes,
     expected_running_time, final_costs, joint_angles, pareto, profiles, running_time_distribution,
-    sweep,
+    snapshots, sweep,
 };
 use crate::experiment::Entrant;
 use crate::optimiser::{Hybrid, Settings};
@@ -238,6 +238,7 @@ fn charts() -> Vec<(&'static str, Figure)> {
         ("joint-angles", joint_angles(&motion())),
         ("joint-derivatives", derivatives(&motion(), &task.limits)),
         ("base-attitude", base_attitude(&motion(), task)),
+        ("snapshots", snapshots(&Motion::sample(&problem, &[0.1; 12], 8.0, 100), task)),
     ]
 }
 
@@ -280,7 +281,7 @@ fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
     let of = |node: &usvg::Node| match node {
         usvg::Node::Group(group) => texts(group),
         usvg::Node::Text(text) => {
-            let chunks = text.chunks().iter().map(|chunk| chunk.text());
+            let chunks = text.chunks().iter().map(usvg::TextChunk::text);
             let seen = text.flattened().bounding_box().transform(text.abs_transform());
             vec![(chunks.collect(), seen.unwrap())]
         }
