@@ -6,6 +6,7 @@ use std::path::Path;
 use clap::Args;
 
 use super::CliError;
+use super::page::{charts, write_page};
 use super::results::{Results, ResultsFolder};
 use super::run::warn_of_budgets;
 use crate::analysis::tables::{NAMES, Table, tables};
@@ -17,7 +18,7 @@ use crate::output::{create_folder, write_file};
 use crate::plot;
 use crate::problem::{BestKnown, Motion};
 
-/// Make tables and figures from what is stored
+/// Make tables, figures and a page from what is stored
 #[derive(Debug, Args)]
 pub(super) struct Report {
     #[command(flatten)]
@@ -28,14 +29,16 @@ impl Report {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let Results { folder, plan, store } = self.results.open()?;
         let runs = analysis::load(&plan, &store)?;
-        write_tables(&plan, &runs, &folder.join("tables"))?;
-        report(&plan, &runs, &folder)
+        let tables = write_tables(&plan, &runs, &folder.join("tables"))?;
+        report(&plan, &runs, &folder)?;
+        let charts = charts(&plan, &runs, MOST_PANELS);
+        write_page(&plan, &store, &runs, &tables, &charts, &folder)
     }
 }
 
 /// Writes every table as CSV and, unless it is a curve, as Markdown and LaTeX; tables from before that these
 /// runs do not give are removed.
-fn write_tables(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError> {
+fn write_tables(plan: &Plan, runs: &[Run], folder: &Path) -> Result<Vec<Table>, CliError> {
     create_folder(folder)?;
     let tables = tables(plan, runs, &targets(plan, runs))?;
     for name in NAMES.iter().filter(|name| tables.iter().all(|table| table.name != **name)) {
@@ -44,16 +47,16 @@ fn write_tables(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError
             let _ = std::fs::remove_file(folder.join(format!("{name}.{extension}")));
         }
     }
-    for Table { name, caption, frame, is_curve } in tables {
-        write_file(&folder.join(format!("{name}.csv")), &csv(&frame)?)?;
+    for Table { name, caption, frame, is_curve } in &tables {
+        write_file(&folder.join(format!("{name}.csv")), &csv(frame)?)?;
         if !is_curve {
-            let text = format!("{}\n{caption}\n", markdown(&frame)?);
+            let text = format!("{}\n{caption}\n", markdown(frame)?);
             write_file(&folder.join(format!("{name}.md")), text.as_bytes())?;
-            let text = format!("% {caption}\n{}", latex(&frame)?);
+            let text = format!("% {caption}\n{}", latex(frame)?);
             write_file(&folder.join(format!("{name}.tex")), text.as_bytes())?;
         }
     }
-    Ok(())
+    Ok(tables)
 }
 
 /// Most panels of a figure.

@@ -1,0 +1,70 @@
+//! What a base looks like, of which the model knows mass, inertia and mount alone.
+
+use serde::Serialize;
+
+use crate::robot::Robot;
+
+/// A box with two panels, for the eye: the motion does not depend on it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Satellite {
+    /// Half the box's edges along the base's axes \[m\].
+    pub half: [f64; 3],
+    /// Where the arm sits, in base axes \[m\].
+    pub mount: [f64; 3],
+    /// The axis, 0 to 2, along which the panels stand out on both sides.
+    pub panel_axis: usize,
+}
+
+/// How far within a face's edge the mount lies at least, as a share of half the edge.
+const MARGIN: f64 = 0.1;
+
+impl Satellite {
+    /// The solid box of the base's mass whose moments of inertia about the base's axes are the base's,
+    /// `e_k² = 6 (I_i + I_j − I_k) / m`, stretched or shrunk until the arm's mount lies on a face of it.
+    pub fn of(robot: &Robot) -> Self {
+        let (mass, inertia) = (robot.base.mass, robot.base.inertia);
+        let squared = |k: usize| 6.0 * (inertia.trace() - 2.0 * inertia[(k, k)]) / mass;
+        let mean = (6.0 * inertia.trace() / (3.0 * mass)).sqrt();
+        // An inertia that no solid body has would give an edge of no length.
+        let mut half: [f64; 3] =
+            std::array::from_fn(|k| 0.5 * squared(k).max(0.1 * mean * mean).sqrt());
+        let mount: [f64; 3] = robot.mount.into();
+        let ratio = |k: usize| mount[k].abs() / half[k];
+        let face = (0..3).fold(2, |face, k| if ratio(k) > ratio(face) { k } else { face });
+        for (k, half) in half.iter_mut().enumerate() {
+            if k != face {
+                *half = half.max(mount[k].abs() / (1.0 - MARGIN));
+            } else if mount[k] != 0.0 {
+                *half = mount[k].abs();
+            }
+        }
+        Self { half, mount, panel_axis: if face == 1 { 2 } else { 1 } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A solid box of 2 × 3 × 4 m and 120 kg has `I = 10 (9 + 16, 4 + 16, 4 + 9)` (any textbook).
+    #[test]
+    fn a_solid_box_is_found_again() {
+        let mut robot = Robot::from_document(&Robot::embedded("xiao2023").unwrap()).unwrap();
+        robot.base.mass = 120.0;
+        robot.base.inertia = nalgebra::Matrix3::from_diagonal(&[250.0, 200.0, 130.0].into());
+        robot.mount = [0.2, -1.5, 0.0].into();
+        let satellite = Satellite::of(&robot);
+        for (found, expected) in satellite.half.iter().zip([1.0, 1.5, 2.0]) {
+            assert!((found - expected).abs() < 1e-12, "{:?}", satellite.half);
+        }
+        assert_eq!(satellite.panel_axis, 2);
+    }
+
+    #[test]
+    fn the_mount_lies_on_a_face() {
+        let robot = Robot::from_document(&Robot::embedded("xiao2023").unwrap()).unwrap();
+        let Satellite { half, mount, panel_axis } = Satellite::of(&robot);
+        assert_eq!((half[2], panel_axis), (mount[2], 1));
+        assert!(half[0] > mount[0].abs() && half[1] > mount[1].abs());
+    }
+}
