@@ -100,7 +100,6 @@ struct TableContent<'a> {
     caption: &'a str,
     /// Of each column: `text`, `count` or `real`.
     kinds: String,
-    rows: usize,
     data: Embedded,
     is_curve: bool,
     /// Whether a chart offers it.
@@ -145,7 +144,6 @@ impl Page<'_> {
             title: title(table.name),
             caption: &table.caption,
             kinds: table.frame.columns().iter().map(kind).collect::<Vec<_>>().join(" "),
-            rows: table.frame.height(),
             data: Embedded::new(&String::from_utf8_lossy(&csv(&table.frame)?))?,
             is_curve: table.is_curve,
             is_drawn: self.charts.iter().any(|chart| chart.table == table.name),

@@ -74,12 +74,11 @@ struct Counts(BTreeMap<String, usize>);
 impl Counts {
     fn add(&mut self, column: &Column) -> PolarsResult<()> {
         for row in 0..column.len() {
-            let value = match column.get(row)? {
-                AnyValue::Null => continue,
-                AnyValue::String(text) => text.to_owned(),
-                other => other.to_string(),
-            };
-            *self.0.entry(value).or_default() += 1;
+            let value = column.get(row)?;
+            if !value.is_null() {
+                let text = value.get_str().map_or_else(|| value.to_string(), str::to_owned);
+                *self.0.entry(text).or_default() += 1;
+            }
         }
         Ok(())
     }

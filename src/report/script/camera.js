@@ -1,9 +1,9 @@
 // A camera that circles the robot, and the hands that turn it.
 
 /** Tangent of half the angle that the camera sees. */
-const HALF_VIEW = 0.32;
+const HALF_VIEW = 0.2;
 
-const START = { azimuth: -2.0, elevation: 0.42, zoom: 1 };
+const START = { azimuth: -0.95, elevation: 0.42, zoom: 1 };
 
 class Camera {
   /** Looks at `target` from where a ball of this radius is all in view. */
@@ -34,7 +34,7 @@ class Camera {
     this.backward = [ce * ca, ce * sa, se];
     this.right = [-sa, ca, 0];
     this.up = cross(this.backward, this.right);
-    this.eye = add(this.target, scale(this.backward, (1.1 * this.radius) / HALF_VIEW / this.zoom));
+    this.eye = add(this.target, scale(this.backward, (0.85 * this.radius) / HALF_VIEW / this.zoom));
     this.middle = [width / 2, height / 2];
     this.focal = Math.min(width, height) / 2 / HALF_VIEW;
   }

@@ -14,7 +14,7 @@ function patch(corner, across, up, columns, rows, colour, normal) {
 }
 
 /** A box along the axes, with half its edges; `colours` by axis and side, such as `colours["+x"]`, else `other`. */
-function box(centre, half, colours, divisions = 4) {
+function box(centre, half, colours, divisions) {
   return [0, 1, 2].flatMap((k) =>
     [1, -1].flatMap((side) => {
       const along = (axis, amount) => [0, 1, 2].map((i) => (i === axis ? amount : 0));
@@ -37,8 +37,8 @@ function boxEdges(centre, half) {
   ]);
 }
 
-/** A cone's trunk between two points, with its ends closed. */
-function tube(from, to, radii, colour, { sides = 12, segments = 1, ends = true } = {}) {
+/** A cone's trunk between two points, with its ends closed; the far one may have a colour of its own. */
+function tube(from, to, radii, colour, { sides = 12, segments = 1, end = colour } = {}) {
   const axis = subtract(to, from);
   const [u, along] = [perpendicular(axis), unit(axis)];
   const v = cross(along, u);
@@ -60,10 +60,8 @@ function tube(from, to, radii, colour, { sides = 12, segments = 1, ends = true }
       faces.push({ points: [near[k], near[next], far[next], far[k]], colour, normal });
     });
   }
-  if (ends) {
-    faces.push({ points: ring(0), colour, normal: scale(along, -1) });
-    faces.push({ points: ring(1), colour, normal: along });
-  }
+  faces.push({ points: ring(0), colour, normal: scale(along, -1) });
+  faces.push({ points: ring(1), colour: end, normal: along });
   return faces;
 }
 
@@ -89,8 +87,8 @@ function panels({ half, panel_axis: axis }) {
 function satelliteFaces(satellite, colours) {
   const { half } = satellite;
   const nose = 0.28 * Math.min(half[1], half[2]);
-  const faces = box([0, 0, 0], half, { "+x": colours.front, other: colours.body }, 5);
-  faces.push(...tube([half[0], 0, 0], [half[0] + 0.9 * nose, 0, 0], [0.55 * nose, 1.5 * nose], colours.front, { sides: 18 }));
+  const faces = box([0, 0, 0], half, { "+x": colours.front, other: colours.body }, 8);
+  faces.push(...tube([half[0], 0, 0], [half[0] + 0.9 * nose, 0, 0], [0.55 * nose, 1.5 * nose], colours.front, { sides: 18, segments: 3, end: colours.tool }));
   for (const { root, base, corner, out, across } of panels(satellite)) {
     faces.push(...tube(base, root, [0.06 * half[0], 0.06 * half[0]], colours.joint, { sides: 6 }));
     faces.push(...patch(corner, out, across, 8, 3, colours.panel));

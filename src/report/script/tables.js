@@ -6,6 +6,9 @@ const FIRST_ROWS = 50;
 /** Rows that each further request adds. */
 const MORE_ROWS = 1000;
 
+/** A cell with more letters may be broken into lines. */
+const LONG_TEXT = 40;
+
 /** A number as people read it: five significant digits, in plain notation where that is readable. */
 function significant(number) {
   if (!Number.isFinite(number)) return number === Infinity ? "∞" : "–";
@@ -109,13 +112,14 @@ class DataTable {
   /** The body, and how much of the table it is. */
   fill() {
     const matches = this.matches();
-    const rows = matches.slice(0, this.limit).map((i) => this.row(this.rows[i]));
-    this.body.replaceChildren(...rows);
+    const visible = matches.slice(0, this.limit);
+    this.body.replaceChildren(...visible.map((i) => this.row(this.rows[i])));
     if (this.count) {
       const few = matches.length < this.rows.length;
-      this.count.textContent = few ? `${matches.length} of ${this.rows.length} rows` : `${matches.length} rows`;
+      const rows = this.rows.length === 1 ? "row" : "rows";
+      this.count.textContent = few ? `${matches.length} of ${this.rows.length} ${rows}` : `${matches.length} ${rows}`;
     }
-    const hidden = matches.length - rows.length;
+    const hidden = matches.length - visible.length;
     this.more.hidden = hidden === 0;
     this.more.textContent = `Show ${Math.min(hidden, MORE_ROWS)} more of ${hidden} rows`;
   }
@@ -125,6 +129,7 @@ class DataTable {
     for (const k of this.columns) {
       const cell = row.insertCell();
       cell.className = this.kinds[k];
+      cell.classList.toggle("long", cells[k].length > LONG_TEXT);
       cell.textContent = shown(cells[k], this.kinds[k]);
     }
     return row;

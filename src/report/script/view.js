@@ -12,15 +12,16 @@ const DARK = {
 };
 
 /** Where the light comes from, and how much reaches what it does not. */
-const SUN = unit([-0.45, -0.75, 0.9]);
-const AMBIENT = 0.5;
+const SUN = unit([0.6, -0.25, 0.85]);
+const AMBIENT = 0.42;
 
 /** Directions spread evenly over the sky, shaken so that they look like stars; the same ones every time. */
-const STARS = Array.from({ length: 260 }, (_, i) => {
+const STAR_COUNT = 1500;
+const STARS = Array.from({ length: STAR_COUNT }, (_, i) => {
   const noise = (k) => ((Math.sin(i * 12.9898 + k * 78.233) * 43758.5453) % 1 + 1) % 1;
-  const [height, angle] = [1 - (2 * (i + noise(1))) / 260, i * 2.39996 + noise(2)];
+  const [height, angle] = [1 - (2 * (i + noise(1))) / STAR_COUNT, i * 2.39996 + noise(2)];
   const ring = Math.sqrt(Math.max(0, 1 - height * height));
-  return { direction: [ring * Math.cos(angle), ring * Math.sin(angle), height], size: 0.5 + 1.1 * noise(3) ** 3 };
+  return { direction: [ring * Math.cos(angle), ring * Math.sin(angle), height], size: 0.6 + 1.4 * noise(3) ** 3 };
 });
 
 class View {
@@ -37,21 +38,20 @@ class View {
   show(scene) {
     this.scene = scene;
     this.palette = null;
-    const { half } = scene.satellite;
-    const ball = Math.hypot(...half) * 1.5;
-    const places = scene.frames.flatMap(({ position, attitude, origins }) => [
-      ...origins.map((origin) => add(position, turn(attitude, origin))),
-      ...[0, 1, 2].flatMap((k) => [1, -1].map((side) => add(position, [0, 1, 2].map((i) => (i === k ? side * ball : 0))))),
-    ]);
-    const corner = (pick) => [0, 1, 2].map((k) => pick(...places.map((place) => place[k])));
-    const [low, high] = [corner(Math.min), corner(Math.max)];
+    const outline = panels(scene.satellite).flatMap((panel) => panel.outline);
+    const corners = [...outline, ...boxEdges([0, 0, 0], scene.satellite.half).flat()];
+    const places = scene.frames.flatMap(({ position, attitude, origins }) =>
+      [...corners, ...origins].map((point) => add(position, turn(attitude, point))),
+    );
+    const extreme = (pick) => [0, 1, 2].map((k) => places.map((place) => place[k]).reduce((a, b) => pick(a, b)));
+    const [low, high] = [extreme(Math.min), extreme(Math.max)];
     this.camera.target = scale(add(low, high), 0.5);
-    this.camera.radius = length(subtract(high, low)) / 2;
-    this.floor = low[2] - 0.15 * this.camera.radius;
+    this.camera.radius = Math.max(...places.map((place) => length(subtract(place, this.camera.target))));
+    this.floor = low[2] - 0.1 * this.camera.radius;
     this.trace = scene.frames.map(({ position, attitude, origins }) => add(position, turn(attitude, origins.at(-1))));
     const { origins } = scene.frames[0];
     const reach = origins.slice(1).reduce((sum, origin, i) => sum + length(subtract(origin, origins[i])), 0);
-    this.radius = 0.03 * (reach || ball);
+    this.radius = 0.03 * (reach || this.camera.radius);
   }
 
   /** Shows a motion at a share of its time. */
