@@ -33,7 +33,8 @@
 //!
 //! | floor | modules |
 //! |---|---|
-//! | 12 | [`cli`]: one file a verb |
+//! | 13 | [`cli`]: one file a verb |
+//! | 12 | `report`: the page of an experiment |
 //! | 11 | `plot`: charts; [`export`]: motions, and an experiment's runs, in formats that other tools read |
 //! | 10 | `analysis`: from stored runs to tables |
 //! | 9 | `experiment`: config, instances, plan, runner, store |
@@ -81,6 +82,8 @@ pub mod output;
 pub mod plot;
 pub mod posture;
 pub mod problem;
+#[cfg(feature = "harness")]
+pub mod report;
 pub mod robot;
 pub mod scalar;
 pub mod so3;

@@ -22,6 +22,8 @@ mod compact;
 mod export;
 mod list;
 mod motion;
+#[cfg(feature = "harness")]
+mod page;
 mod plan;
 mod progress;
 mod replay;
@@ -134,6 +136,10 @@ enum CliError {
     #[cfg(feature = "harness")]
     #[error(transparent)]
     Suite(#[from] crate::export::SuiteError),
+    /// A report's page could not be made.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    Page(#[from] crate::report::PageError),
     /// A table could not be made.
     #[cfg(feature = "harness")]
     #[error(transparent)]

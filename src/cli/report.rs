@@ -6,16 +6,17 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::CliError;
+use super::page::write_page;
 use super::results::{Results, ResultsFolder};
 use super::run::warn_of_budgets;
 use crate::analysis::tables::{NAMES, Table, motion_table, tables};
 use crate::analysis::{self, Run, best_run, csv, latex, markdown, render, summary, targets};
-use crate::experiment::{Instance, Plan};
+use crate::experiment::{Instance, Plan, Store};
 use crate::output::{create_folder, write_file};
 use crate::plot::{self, Chart};
 use crate::problem::{BestKnown, Motion, Reorientation};
 
-/// Make tables and figures from what is stored
+/// Make tables, figures and a page from what is stored
 #[derive(Debug, Args)]
 pub(super) struct Report {
     #[command(flatten)]
@@ -26,7 +27,7 @@ impl Report {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let Results { folder, plan, store } = self.results.open()?;
         let runs = analysis::load(&plan, &store)?;
-        report(&plan, &runs, &folder)
+        report(&plan, &store, &runs, &folder)
     }
 }
 
@@ -69,7 +70,12 @@ fn remove<'a>(folder: &Path, names: impl Iterator<Item = &'a &'a str>, extension
 const MOST_TOLD: usize = 24;
 
 /// Prints the summary of all stored runs of the plan; writes and draws all that they give.
-pub(super) fn report(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), CliError> {
+pub(super) fn report(
+    plan: &Plan,
+    store: &Store,
+    runs: &[Run],
+    folder: &Path,
+) -> Result<(), CliError> {
     if runs.len() < plan.runs.len() {
         say!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
     }
@@ -88,7 +94,8 @@ pub(super) fn report(plan: &Plan, runs: &[Run], folder: &Path) -> Result<(), Cli
     }
     write_tables(&tables, &folder.join("tables"))?;
     write_charts(&charts, &folder.join("figures"))?;
-    say!("{}: tables/, figures/", folder.display());
+    write_page(plan, store, runs, &tables, &charts, folder)?;
+    say!("{}: report.html, tables/, figures/", folder.display());
     let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
     if failed > 0 {
         note!("warning: {failed} of {} runs failed or found nothing", runs.len());

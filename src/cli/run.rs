@@ -111,7 +111,7 @@ impl Run {
                 );
                 Ok(())
             }
-            _ => report(&plan, &analysis::load(&plan, &store)?, &folder),
+            _ => report(&plan, &store, &analysis::load(&plan, &store)?, &folder),
         }
     }
 

@@ -180,7 +180,7 @@ fn draw_legend(sheet: &Sheet<'_>, rows: &[Vec<(f64, String, Stroke)>]) -> Result
 /// Text becomes outlines, so the SVG looks the same wherever it is opened.
 fn svg(tree: &usvg::Tree) -> String {
     tree.to_string(&usvg::WriteOptions {
-        coordinates_precision: 3,
+        coordinates_precision: 1,
         transforms_precision: 5,
         ..usvg::WriteOptions::default()
     })

@@ -1,0 +1,40 @@
+// What happens when the page opens.
+
+const darkScheme = matchMedia("(prefers-color-scheme: dark)");
+
+/** Whether the page is dark now: as the button says, or else as the system does. */
+function isDark() {
+  const { theme } = document.documentElement.dataset;
+  return theme ? theme === "dark" : darkScheme.matches;
+}
+
+/** The button that changes between light and dark. */
+function offerTheme(changed) {
+  const button = document.getElementById("theme");
+  const tell = () => {
+    button.textContent = isDark() ? "Light" : "Dark";
+    button.ariaLabel = `${button.textContent} colours`;
+    changed();
+  };
+  button.addEventListener("click", () => {
+    document.documentElement.dataset.theme = isDark() ? "light" : "dark";
+    tell();
+  });
+  darkScheme.addEventListener("change", tell);
+  tell();
+}
+
+/** The player, where the experiment has motions. */
+async function openPlayer() {
+  const section = document.getElementById("motion");
+  if (!section) return null;
+  const scenes = JSON.parse(await embedded(document.getElementById("motions")));
+  return new Player(section, scenes);
+}
+
+offerDownloads();
+offerFigures();
+const player = await openPlayer();
+offerTheme(() => player?.view.draw());
+await fillTables();
+document.documentElement.dataset.ready = "";

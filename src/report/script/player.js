@@ -1,0 +1,166 @@
+// Playing a motion: time, controls, and what they say.
+
+/** From which share of a limit on it counts as reached. */
+const AT_LIMIT = 0.99;
+
+/** A pose between two frames. */
+function poseAt(frames, share) {
+  const place = Math.min(Math.max(share, 0), 1) * (frames.length - 1);
+  const i = Math.min(Math.floor(place), frames.length - 2);
+  const [a, b, rest] = [frames[i], frames[i + 1], place - i];
+  const all = (key) => a[key].map((from, k) => between(from, b[key][k], rest));
+  return {
+    position: between(a.position, b.position, rest),
+    attitude: attitudeBetween(a.attitude, b.attitude, rest),
+    origins: all("origins"),
+    axes: all("axes"),
+    jaw: between(a.jaw, b.jaw, rest),
+  };
+}
+
+/** A joint's angle, rate, acceleration and jerk between two frames. */
+function stateAt(states, share) {
+  const place = share * (states.length - 1);
+  const i = Math.min(Math.floor(place), states.length - 2);
+  return between(states[i], states[i + 1], place - i);
+}
+
+/** How much of what it may do a joint does: of its range to either side of the middle, and of its limits. */
+function shares({ range: [low, high], limits }, [angle, ...derivatives]) {
+  const ofRange = Math.abs(angle - (low + high) / 2) / ((high - low) / 2);
+  return [ofRange, ...derivatives.map((value, k) => Math.abs(value) / limits[k])];
+}
+
+class Player {
+  constructor(section, scenes) {
+    const part = (name) => section.querySelector(`[data-part="${name}"]`);
+    this.scenes = scenes;
+    this.view = new View(part("canvas"));
+    this.parts = Object.fromEntries(
+      ["canvas", "play", "scrub", "speed", "loop", "reset", "instance", "about", "time", "yaw", "pitch", "roll", "error", "joints"]
+        .map((name) => [name, part(name)]),
+    );
+    this.listen();
+    this.choose(0);
+  }
+
+  listen() {
+    const { canvas, play, scrub, reset, instance } = this.parts;
+    play.addEventListener("click", () => this.toggle());
+    canvas.addEventListener("keydown", (event) => {
+      if (event.key !== " ") return;
+      event.preventDefault();
+      this.toggle();
+    });
+    scrub.addEventListener("input", () => {
+      this.pause();
+      this.go(Number(scrub.value) / Number(scrub.max));
+    });
+    reset.addEventListener("click", () => {
+      this.view.camera.reset();
+      this.view.draw();
+    });
+    instance?.addEventListener("change", () => this.choose(instance.selectedIndex));
+  }
+
+  /** Begins with another motion. */
+  choose(index) {
+    this.pause();
+    this.scene = this.scenes[index];
+    const { optimiser, seed, cost, duration, joints } = this.scene;
+    this.parts.about.textContent = `Found by ${optimiser} with seed ${seed}: J = ${significant(cost)}, ${significant(duration)} s.`;
+    this.parts.canvas.ariaLabel =
+      `The robot seen from outside, in inertial axes: a satellite with two solar panels and an arm of ${joints.length} ` +
+      "joints that turns it, the way of the tool, the base’s axes, and the base at its goal as a dashed outline. " +
+      "Arrow keys turn the view, plus and minus zoom, Home resets, space plays and pauses.";
+    this.rows = joints.map((joint) => jointRow(joint));
+    this.parts.joints.replaceChildren(...this.rows.map(({ row }) => row));
+    this.view.show(this.scene);
+    this.go(0);
+  }
+
+  toggle() {
+    if (this.playing) this.pause();
+    else this.play();
+  }
+
+  play() {
+    if (this.share >= 1) this.share = 0;
+    this.playing = true;
+    this.parts.play.textContent = "Pause";
+    let before = performance.now();
+    const step = (now) => {
+      if (!this.playing) return;
+      const share = this.share + (Math.max(0, now - before) / 1000 / this.scene.duration) * Number(this.parts.speed.value);
+      before = now;
+      const ends = share >= 1 && !this.parts.loop.checked;
+      this.go(ends ? 1 : share % 1);
+      if (ends) this.pause();
+      else requestAnimationFrame(step);
+    };
+    requestAnimationFrame(step);
+  }
+
+  pause() {
+    this.playing = false;
+    this.parts.play.textContent = "Play";
+  }
+
+  /** Shows the motion at a share of its time. */
+  go(share) {
+    this.share = share;
+    const { scene, parts } = this;
+    const pose = poseAt(scene.frames, share);
+    const [now, all] = [(share * scene.duration).toFixed(2), scene.duration.toFixed(2)];
+    parts.scrub.value = share * Number(parts.scrub.max);
+    parts.scrub.ariaValueText = `${now} s of ${all} s`;
+    parts.time.textContent = `${now} of ${all} s`;
+    const angles = yawPitchRoll(pose.attitude);
+    ["yaw", "pitch", "roll"].forEach((name, k) => (parts[name].textContent = degrees(angles[k])));
+    parts.error.textContent = degrees(angleBetween(pose.attitude, scene.goal.attitude));
+    scene.joints.forEach((joint, i) => this.rows[i].tell(stateAt(joint.states, share)));
+    this.view.at(pose, share);
+  }
+}
+
+/** An angle to hundredths, with a minus that is as wide as a digit, and no minus before nothing. */
+function degrees(angle) {
+  const text = angle.toFixed(2);
+  return `${Number(text) === 0 ? "0.00" : text.replace("-", "−")}°`;
+}
+
+const MEASURES = ["angle", "rate", "acceleration", "jerk"];
+
+/** A joint's row of the table, and how to tell it the joint's state. */
+function jointRow(joint) {
+  const row = document.createElement("tr");
+  const name = document.createElement("th");
+  name.scope = "row";
+  name.textContent = joint.name;
+  const angle = document.createElement("td");
+  angle.className = "real";
+  const gauges = MEASURES.map((measure) => gauge(`${measure} of ${joint.name}, share of its limit`));
+  row.append(name, angle, ...gauges.map(({ cell }) => cell));
+  const tell = (state) => {
+    angle.textContent = degrees(state[0]);
+    shares(joint, state).forEach((share, k) => gauges[k].tell(share));
+  };
+  return { row, tell };
+}
+
+/** A cell with a bar and its share in words. */
+function gauge(label) {
+  const cell = document.createElement("td");
+  const meter = Object.assign(document.createElement("meter"), { min: 0, max: 1, low: 0, high: AT_LIMIT, optimum: 0.5 });
+  meter.ariaLabel = label;
+  const text = document.createElement("span");
+  cell.className = "gauge";
+  cell.append(meter, text);
+  const tell = (share) => {
+    const full = share >= AT_LIMIT;
+    meter.value = Math.min(share, 1);
+    text.textContent = full ? `${Math.round(100 * share)} % limit` : `${Math.round(100 * share)} %`;
+    cell.classList.toggle("full", full);
+  };
+  return { cell, tell };
+}
