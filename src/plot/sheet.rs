@@ -130,7 +130,7 @@ impl Sheet<'_> {
     /// A line through places.
     pub(super) fn line(&self, places: &[Place], stroke: &Stroke) -> Result<(), PlotError> {
         let style = stroke.colour.stroke_width(units(stroke.width).unsigned_abs());
-        for piece in dashed(places, stroke.dashes) {
+        for piece in dashed(&simplified(places), stroke.dashes) {
             let mut piece: Vec<_> = piece.into_iter().map(on_grid).collect();
             piece.dedup();
             if piece.len() > 1 {
@@ -147,7 +147,7 @@ impl Sheet<'_> {
         colour: RGBColor,
         opacity: f64,
     ) -> Result<(), PlotError> {
-        let corners: Vec<_> = corners.iter().copied().map(on_grid).collect();
+        let corners: Vec<_> = simplified(corners).into_iter().map(on_grid).collect();
         Ok(self.0.draw(&Polygon::new(corners, colour.mix(opacity).filled()))?)
     }
 
@@ -195,6 +195,41 @@ impl Sheet<'_> {
     }
 }
 
+/// A line without the places that are nearer than half a drawing unit to the line without them.
+///
+/// Douglas and Peucker (1973), doi 10.3138/FM57-6770-U75U-7727.
+fn simplified(places: &[Place]) -> Vec<Place> {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else { return Vec::new() };
+    let mut kept = vec![*first];
+    let mut parts = vec![places];
+    while let Some(part) = parts.pop() {
+        let ends = [part[0], part[part.len() - 1]];
+        let distances = part.iter().map(|place| distance(*place, ends));
+        let farthest = distances.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        match farthest {
+            Some((i, distance)) if distance > 0.5 / UNITS_PER_MM => {
+                parts.push(&part[i..]);
+                parts.push(&part[..=i]);
+            }
+            _ => kept.push(ends[1]),
+        }
+    }
+    debug_assert_eq!(kept.last(), Some(last));
+    kept
+}
+
+/// How far a place is from a piece of line.
+fn distance([x, y]: Place, [[from_x, from_y], [to_x, to_y]]: [Place; 2]) -> f64 {
+    let (along_x, along_y) = (to_x - from_x, to_y - from_y);
+    let square = along_x * along_x + along_y * along_y;
+    let share = if square > 0.0 {
+        (((x - from_x) * along_x + (y - from_y) * along_y) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (x - from_x - share * along_x).hypot(y - from_y - share * along_y)
+}
+
 /// The pieces of a line that its dashes leave.
 fn dashed(places: &[Place], dashes: Dashes) -> Vec<Vec<Place>> {
     if dashes.is_empty() {
@@ -232,7 +267,16 @@ fn dashed(places: &[Place], dashes: Dashes) -> Vec<Vec<Place>> {
 
 #[cfg(test)]
 mod tests {
-    use super::dashed;
+    use super::{dashed, simplified};
+
+    #[test]
+    fn simpler_lines_keep_their_corners() {
+        let steps = [[0.0, 0.0], [1.0, 0.001], [2.0, 0.0], [2.0, 1.0], [2.0, 2.0], [3.0, 2.0]];
+        assert_eq!(simplified(&steps), [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [3.0, 2.0]]);
+        let closed = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
+        assert_eq!(simplified(&closed), closed);
+        assert!(simplified(&[]).is_empty());
+    }
 
     #[test]
     fn dashes_go_round_corners() {
