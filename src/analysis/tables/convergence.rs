@@ -2,12 +2,12 @@
 
 use polars::prelude::*;
 
-use super::{Field, Table};
+use super::{Analysis, Table};
 use crate::analysis::{Curve, convergence};
 
 /// One line an optimiser, group and place on the curve.
-pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
-    let curves = convergence(field.plan, field.runs);
+pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
+    let curves = convergence(analysis.plan, analysis.runs);
     let labels = |label: fn(&Curve) -> &str| -> Vec<&str> {
         let all = curves.iter().map(|curve| (label(curve), curve.evaluations.len()));
         all.flat_map(|(label, count)| std::iter::repeat_n(label, count)).collect()
