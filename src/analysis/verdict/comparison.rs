@@ -76,34 +76,31 @@ impl<'a> Standings<'a> {
                 list(&self.names(first.iter().copied()))
             );
         }
-        let mut told = match first {
-            [winner] => {
-                format!(
-                    "{} has the lowest mean rank, {rank} among {count} optimisers over {over}.",
-                    self.name(*winner)
-                )
-            }
-            _ => format!(
-                "{} are level: they share the lowest mean rank, {rank} among {count} optimisers over {over}.",
-                list(&self.names(first.iter().copied()))
-            ),
-        };
-        let alike =
-            others.iter().copied().filter(|&o| first.iter().any(|&f| !self.blocks.differ(f, o)));
-        let alike = self.names(alike);
-        let it = if first.len() == 1 { "It" } else { "They" };
-        told += &match alike.len() {
-            _ if self.is_hopeless() => {
-                format!(" Pair by pair, {over} cannot show that this is more than chance.")
-            }
-            0 if it == "It" => " It differs significantly from every other.".to_owned(),
-            0 => " They differ significantly from every other.".to_owned(),
-            _ => format!(
-                " {it} cannot be told from {} at the 5 % level.",
+        let names = list(&self.names(first.iter().copied()));
+        let is = if first.len() == 1 { "has" } else { "are level: they share" };
+        let told = format!(
+            "{names} {is} the lowest mean rank, {rank} among {count} optimisers over {over}."
+        );
+        format!("{told} {}", self.who_else(first, others))
+    }
+
+    /// Who cannot be told from the first.
+    fn who_else(&self, first: &[usize], others: &[usize]) -> String {
+        if self.is_hopeless() {
+            let over = self.blocks_told();
+            return format!("Pair by pair, {over} cannot show that this is more than chance.");
+        }
+        let is_alike = |&o: &usize| first.iter().any(|&f| !self.blocks.differ(f, o));
+        let alike = self.names(others.iter().copied().filter(is_alike));
+        match (first.len(), alike.len()) {
+            (1, 0) => "It differs significantly from every other.".to_owned(),
+            (_, 0) => "They differ significantly from every other.".to_owned(),
+            (n, _) => format!(
+                "{} cannot be told from {} at the 5 % level.",
+                if n == 1 { "It" } else { "They" },
                 some_of(&alike, others.len())
             ),
-        };
-        told
+        }
     }
 
     fn by_how_much(&self) -> String {
@@ -134,36 +131,29 @@ impl<'a> Standings<'a> {
         };
         let symbol = self.analysis.plan.cost_symbol();
         let instances = &self.analysis.plan.instances;
-        let mut told = if instances.iter().all(|i| i.group == instances[0].group) {
+        let named = self.name(winner);
+        let mut told = vec![if instances.iter().all(|i| i.group == instances[0].group) {
             let cost = |o| number(self.median_cost(o));
-            format!(
-                "The median cost of {} is {symbol} {}, {}.",
-                self.name(winner),
-                cost(winner),
-                against(&cost)
-            )
+            let own = cost(winner);
+            format!("The median cost of {named} is {symbol} {own}, {}.", against(&cost))
         } else {
             let rank = |o| self.rank(o);
-            format!(
-                "The mean rank of {} is {}, {}.",
-                self.name(winner),
-                rank(winner),
-                against(&rank)
-            )
-        };
+            format!("The mean rank of {named} is {}, {}.", rank(winner), against(&rank))
+        }];
         if self.blocks.unit == "instances" {
             let lowest = |row: &&Vec<f64>| row.iter().all(|&cost| row[winner] <= cost);
             let won = self.blocks.costs.iter().filter(lowest).count();
-            told += &format!(
-                " Its median is the lowest, alone or with others, on {won} of {}.",
-                plural(self.blocks.costs.len(), "instance")
-            );
+            let all = plural(self.blocks.costs.len(), "instance");
+            told.push(format!(
+                "Its median is the lowest, alone or with others, on {won} of {all}."
+            ));
         }
-        told + &format!(
-            " A run of it ends lower than one of {} with probability {:.2} (A12, ties count half).",
+        told.push(format!(
+            "A run of it ends lower than one of {} with probability {:.2} (A12, ties count half).",
             self.name(second),
             self.blocks.effect(winner, second)
-        )
+        ));
+        told.join(" ")
     }
 
     fn median_cost(&self, optimiser: usize) -> f64 {
@@ -174,25 +164,31 @@ impl<'a> Standings<'a> {
     fn significance(&self) -> String {
         let (over, friedman) = (self.blocks_told(), &self.blocks.friedman);
         let says = if friedman.p <= ALPHA { "differ" } else { "cannot be said to differ" };
-        let mut told = format!(
-            "By Friedman's test over {over} the optimisers {says} ({}).",
-            p_value(friedman.p)
-        );
-        told += &if self.is_hopeless() { self.hopeless() } else { self.pairs_told() };
-        told += &match (self.blocks.unit, self.analysis.plan.cost_symbol()) {
+        let p = p_value(friedman.p);
+        let mut told = vec![
+            format!("By Friedman's test over {over} the optimisers {says} ({p})."),
+            if self.is_hopeless() { self.hopeless() } else { self.pairs_told() },
+            self.blocks_mean(),
+        ];
+        if self.blocks.unit == "instances" && self.varies_settings() {
+            told.push(
+                "Settings of one task are not independent tasks, so p-values are smaller than they should be."
+                    .to_owned(),
+            );
+        }
+        told.join(" ")
+    }
+
+    fn blocks_mean(&self) -> String {
+        match (self.blocks.unit, self.analysis.plan.cost_symbol()) {
             ("seeds", "J") => {
-                " Blocks are the seeds of one task, which says nothing about other tasks."
-                    .to_owned()
+                "Blocks are the seeds of one task, which says nothing about other tasks.".to_owned()
             }
             ("seeds", _) => {
-                " Blocks are the seeds of one instance, which says nothing about others.".to_owned()
+                "Blocks are the seeds of one instance, which says nothing about others.".to_owned()
             }
-            _ => format!(" Blocks are {over}, each with the median over its seeds."),
-        };
-        if self.blocks.unit == "instances" && self.varies_settings() {
-            told += " Settings of one task are not independent tasks, so p-values are smaller than they should be.";
+            _ => format!("Blocks are {}, each with the median over its seeds.", self.blocks_told()),
         }
-        told
     }
 
     /// Whether tasks differ in more than their poses.
@@ -209,7 +205,7 @@ impl<'a> Standings<'a> {
         let over = self.blocks_told();
         let least = p_value(self.blocks.least_p().min(1.0)).replace("p = ", "");
         format!(
-            " With {over} no pair can be told apart at the 5 % level: the least p of a pair is {least}{correction}."
+            "With {over} no pair can be told apart at the 5 % level: the least p of a pair is {least}{correction}."
         )
     }
 
@@ -227,7 +223,7 @@ impl<'a> Standings<'a> {
             }
         };
         format!(
-            " By Wilcoxon's test with Holm's correction at the 5 % level {} {verb}.",
+            "By Wilcoxon's test with Holm's correction at the 5 % level {} {verb}.",
             self.name(winner)
         )
     }

@@ -51,30 +51,28 @@ fn many_tasks(best: &[OnTask<'_>], tasks: usize) -> String {
     let gaps: Vec<f64> = best.iter().filter_map(gap).collect();
     let reached = gaps.iter().filter(|&&gap| gap <= REACHED).count();
     let beaten = gaps.iter().filter(|&&gap| gap < -REACHED).count();
-    let mut told = match gaps.len() {
-        0 => format!("No best cost is known of the {}.", plural(tasks, "instance")),
+    let all = plural(tasks, "instance");
+    let told = match gaps.len() {
+        0 => format!("No best cost is known of the {all}."),
         known => {
             let known = plural(known, "instance");
+            let beaten =
+                if beaten > 0 { format!(", and beaten on {beaten}") } else { String::new() };
+            let furthest = 100.0 * gaps.iter().copied().fold(0.0, f64::max);
+            let missed = if reached < gaps.len() {
+                format!("; elsewhere the best is up to {} % above", number(furthest))
+            } else {
+                String::new()
+            };
             format!(
-                "The best known cost was reached within 10⁻⁶ on {reached} of the {known} that have one"
+                "The best known cost was reached within 10⁻⁶ on {reached} of the {known} that have one{beaten}{missed}."
             )
         }
     };
-    if !gaps.is_empty() {
-        let furthest = gaps.iter().copied().fold(0.0, f64::max);
-        if beaten > 0 {
-            told += &format!(", and beaten on {beaten}");
-        }
-        if reached < gaps.len() {
-            told += &format!("; elsewhere the best is up to {} % above", number(100.0 * furthest));
-        }
-        told += ".";
-    }
     let home = best.iter().filter(|(run, _)| run.residual_deg <= AT_GOAL_DEG).count();
     let durations: Vec<f64> = best.iter().map(|(run, _)| run.duration).collect();
     format!(
-        "{told} The base ends within 0.01° of the goal on {home} of {}, and the best motions take {}.",
-        plural(tasks, "instance"),
+        "{told} The base ends within 0.01° of the goal on {home} of {all}, and the best motions take {}.",
         span(&durations, " s")
     )
 }

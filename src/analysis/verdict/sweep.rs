@@ -1,7 +1,7 @@
 //! What changes along a sweep.
 
 use super::Finding;
-use super::words::{number, plural, span};
+use super::words::{NONE_DEG, number, plural, span};
 use crate::analysis::statistics::median;
 use crate::analysis::{Analysis, Run};
 
@@ -26,29 +26,28 @@ pub(super) fn finding(analysis: &Analysis<'_>) -> Option<Finding> {
     let symbol = analysis.plan.cost_symbol();
     let many = stops.iter().any(|stop| stop.best.len() > 1);
     let over = if many { ", medians over the instances of each" } else { "" };
-    let mut told = format!(
-        "Over {}{over}, the best {symbol} is least, {}, at {least_at} and largest, {}, at {most_at}.",
-        plural(stops.len(), "setting"),
-        number(least),
-        number(most)
+    let settings = plural(stops.len(), "setting");
+    let (least, most) = (number(least), number(most));
+    let told = format!(
+        "Over {settings}{over}, the best {symbol} is least, {least}, at {least_at} and largest, {most}, at {most_at}."
     );
-    if symbol == "J" {
-        let all = |value| stops.iter().map(|stop| stop.median(value)).collect::<Vec<f64>>();
-        let residuals = all(|run| run.residual_deg);
-        let largest = residuals.iter().copied().fold(0.0, f64::max);
-        let residual = if largest < 1e-3 {
-            "stays below 0.001°".to_owned()
-        } else {
-            let least = residuals.iter().copied().fold(f64::INFINITY, f64::min);
-            let least = if least < 1e-3 { "below 0.001".to_owned() } else { number(least) };
-            format!("goes from {least}° to {}°", number(largest))
-        };
-        told += &format!(
-            " The best motions take {}; the residual {residual}.",
-            span(&all(|run| run.duration), " s")
-        );
-    }
-    Some(Finding::new("What does the sweep say?", told))
+    let motions = if symbol == "J" { motions(&stops) } else { String::new() };
+    Some(Finding::new("What does the sweep say?", told + &motions))
+}
+
+/// How long the best motions take, and how far off the base ends.
+fn motions(stops: &[Stop<'_>]) -> String {
+    let all = |value| stops.iter().map(|stop| stop.median(value)).collect::<Vec<f64>>();
+    let residuals = all(|run| run.residual_deg);
+    let least = residuals.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = residuals.iter().copied().fold(0.0, f64::max);
+    let residual = match (least < NONE_DEG, most < NONE_DEG) {
+        (_, true) => "stays below 0.001°".to_owned(),
+        (true, false) => format!("goes from below 0.001° to {}°", number(most)),
+        (false, false) => format!("goes from {}° to {}°", number(least), number(most)),
+    };
+    let durations = span(&all(|run| run.duration), " s");
+    format!(" The best motions take {durations}; the residual {residual}.")
 }
 
 /// The groups with a run that found something, in the plan's order.

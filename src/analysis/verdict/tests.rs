@@ -19,7 +19,8 @@ fn answer<'a>(findings: &'a [Finding], question: &str) -> &'a str {
 
 /// A field on test functions.
 fn functions(seeds: u64, names: &str, field: &[&str]) -> Plan {
-    let field: String = field.iter().map(|o| format!("[[optimiser]]\n{o} = {{}}\n")).collect();
+    let field: Vec<String> = field.iter().map(|o| format!("[[optimiser]]\n{o} = {{}}\n")).collect();
+    let field = field.concat();
     plan(&format!(
         "seeds = {seeds}\nbudget = {{ evaluations = 100 }}\n[functions]\n{names}\n{field}"
     ))

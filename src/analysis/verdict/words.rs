@@ -3,7 +3,7 @@
 use crate::analysis::format::significant;
 
 /// Angles below are as good as none: searches end with some 10⁻⁶ \[°\].
-const NONE_DEG: f64 = 1e-3;
+pub(super) const NONE_DEG: f64 = 1e-3;
 
 /// A cost or a time, to four digits.
 pub(super) fn number(value: f64) -> String {
