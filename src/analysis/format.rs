@@ -122,7 +122,7 @@ fn is_blank(column: &Column) -> bool {
 
 fn cell(value: &AnyValue<'_>) -> String {
     match value {
-        AnyValue::Float64(number) => significant(*number),
+        AnyValue::Float64(number) => significant(*number, 5),
         AnyValue::String(text) => text.replace(['\n', '\r'], " "),
         AnyValue::StringOwned(text) => text.replace(['\n', '\r'], " "),
         AnyValue::Null => "–".to_owned(),
@@ -130,14 +130,14 @@ fn cell(value: &AnyValue<'_>) -> String {
     }
 }
 
-/// Five significant digits, in plain notation where that is readable.
-fn significant(number: f64) -> String {
+/// So many significant digits, in plain notation where that is readable.
+pub(super) fn significant(number: f64, digits: usize) -> String {
     if !number.is_finite() {
         return if number == f64::INFINITY { "∞" } else { "–" }.to_owned();
     }
     let magnitude = if number == 0.0 { 0.0 } else { number.abs().log10().floor() };
     if (-4.0..7.0).contains(&magnitude) {
-        format!("{number:.*}", (4.0 - magnitude).max(0.0) as usize)
+        format!("{number:.*}", (digits as f64 - 1.0 - magnitude).max(0.0) as usize)
     } else {
         format!("{number:.3e}")
     }
@@ -158,7 +158,7 @@ mod tests {
             (1.5e-7, "1.500e-7"),
             (f64::NAN, "–"),
         ] {
-            assert_eq!(significant(number), text);
+            assert_eq!(significant(number, 5), text);
         }
     }
 }

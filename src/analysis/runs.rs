@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use polars::prelude::*;
 
+use super::statistics::Trial;
 use crate::experiment::{Plan, RunSpec, Status, Store, StoreError};
 
 /// A stored run.
@@ -48,6 +49,12 @@ impl Run {
     pub fn hit(&self, target: f64) -> Option<u64> {
         let before = self.trace.partition_point(|step| step.cost > target);
         self.trace.get(before).map(|step| step.evaluation)
+    }
+
+    /// What the run says about a target.
+    pub(super) fn trial(&self, target: f64) -> Trial {
+        let hit = self.hit(target);
+        Trial { evaluations: hit.unwrap_or(self.evaluations) as f64, solved: hit.is_some() }
     }
 }
 

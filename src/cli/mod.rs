@@ -22,8 +22,6 @@ mod compact;
 mod export;
 mod list;
 mod motion;
-#[cfg(feature = "harness")]
-mod page;
 mod plan;
 mod progress;
 mod replay;

@@ -6,15 +6,17 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::CliError;
-use super::page::write_page;
-use super::results::{Results, ResultsFolder};
+use super::results::{EXPERIMENT, Results, ResultsFolder};
 use super::run::warn_of_budgets;
-use crate::analysis::tables::{NAMES, Table, motion_table, tables};
-use crate::analysis::{self, Run, best_run, csv, latex, markdown, render, summary, targets};
-use crate::experiment::{Instance, Plan, Store};
+use crate::analysis::tables::{NAMES, Table, motion_table};
+use crate::analysis::{
+    self, Analysis, Finding, Run, csv, latex, markdown, render, summary, targets,
+};
+use crate::experiment::{Plan, Store};
 use crate::output::{create_folder, write_file};
 use crate::plot::{self, Chart};
 use crate::problem::{BestKnown, Motion, Reorientation};
+use crate::report::{Page, provenance, scenes};
 
 /// Make tables, figures and a page from what is stored
 #[derive(Debug, Args)]
@@ -66,6 +68,10 @@ fn remove<'a>(folder: &Path, names: impl Iterator<Item = &'a &'a str>, extension
     }
 }
 
+/// Columns of a line of text.
+const LINE: usize = 100;
+/// What the page is called.
+const PAGE: &str = "report.html";
 /// Most instances whose best motion is told.
 const MOST_TOLD: usize = 24;
 
@@ -80,22 +86,37 @@ pub(super) fn report(
         say!("{} of {} runs are stored so far", runs.len(), plan.runs.len());
     }
     let targets = targets(plan, runs);
+    let analysis = Analysis::new(plan, runs, &targets);
     say!("{}", render(&summary(plan, runs, &targets)?)?);
     warn_of_budgets(plan);
-    let best = best_motions(plan, runs);
+    let best = analysis.best_motions();
     tell(plan, &best)?;
-    let mut tables = tables(plan, runs, &targets)?;
+    let findings = analysis.findings();
+    for Finding { question, answer } in &findings {
+        say!("\n{question}\n{}", textwrap::fill(answer, LINE));
+    }
+    let mut tables = analysis.tables()?;
     let mut charts = plot::charts(plan, &tables)?;
     // Costs of different instances do not compare, so there is no best of all to draw.
-    if let (1, [(_, problem, run)]) = (plan.instances.len(), &best[..]) {
+    if let (1, [(run, problem)]) = (plan.instances.len(), &best[..]) {
         let motion = Motion::sample(problem, &run.coefficients, run.duration, plot::SAMPLES);
         charts.extend(plot::motion_charts(&motion, problem.task()));
         tables.push(motion_table(&motion)?);
     }
     write_tables(&tables, &folder.join("tables"))?;
     write_charts(&charts, &folder.join("figures"))?;
-    write_page(plan, store, runs, &tables, &charts, folder)?;
-    say!("{}: report.html, tables/, figures/", folder.display());
+    let page = Page {
+        name: &plan.name,
+        findings: &findings,
+        scenes: &scenes(plan, &best),
+        charts: &charts,
+        tables: &tables,
+        files: &files(folder),
+        facts: &provenance(plan, store)?,
+    };
+    let path = folder.join(PAGE);
+    write_file(&path, page.html()?.as_bytes())?;
+    say!("\n{}; beside it tables/ and figures/", path.display());
     let failed = runs.iter().filter(|run| run.cost.is_infinite()).count();
     if failed > 0 {
         note!("warning: {failed} of {} runs failed or found nothing", runs.len());
@@ -103,23 +124,16 @@ pub(super) fn report(
     Ok(())
 }
 
-/// The best motion of an instance, and the run that found it.
-type BestMotion<'a> = (&'a Instance, &'a Reorientation, &'a Run);
-
-/// The best motion of every instance that has one.
-fn best_motions<'a>(plan: &'a Plan, runs: &'a [Run]) -> Vec<BestMotion<'a>> {
-    let mut by_instance = vec![Vec::new(); plan.instances.len()];
-    for run in runs {
-        by_instance[run.instance].push(run);
-    }
-    let best = |(instance, runs): (&'a Instance, Vec<&'a Run>)| {
-        Some((instance, instance.reorientation()?, best_run(runs.into_iter())?))
-    };
-    plan.instances.iter().zip(by_instance).filter_map(best).collect()
+/// The files that made the experiment, of those that are there.
+fn files(folder: &Path) -> Vec<(String, String)> {
+    let text = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+    let files = [EXPERIMENT, "robot.toml"].into_iter();
+    files.filter_map(|name| Some((name.to_owned(), text(name)?))).collect()
 }
 
-fn tell(plan: &Plan, best: &[BestMotion<'_>]) -> Result<(), CliError> {
-    for (instance, problem, run) in best.iter().take(MOST_TOLD) {
+fn tell(plan: &Plan, best: &[(&Run, &Reorientation)]) -> Result<(), CliError> {
+    for (run, problem) in best.iter().take(MOST_TOLD) {
+        let instance = &plan.instances[run.instance];
         let optimiser = &plan.optimisers[run.optimiser].label;
         let known = BestKnown::of(problem)
             .map_or_else(String::new, |known| format!(" ({})", known.compared_with(run.cost)));

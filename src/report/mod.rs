@@ -9,9 +9,7 @@ mod embedded;
 mod page;
 mod provenance;
 mod scene;
-mod verdict;
 
 pub use page::{Page, PageError};
 pub use provenance::{Fact, Origin, provenance};
 pub use scene::{JointScene, MOST_SCENES, Scene, scenes};
-pub use verdict::{Verdict, verdict};

@@ -9,9 +9,9 @@ use serde::Serialize;
 
 use super::drawing::Drawing;
 use super::embedded::Embedded;
-use super::{Fact, Scene, Verdict};
-use crate::analysis::csv;
+use super::{Fact, Scene};
 use crate::analysis::tables::Table;
+use crate::analysis::{Finding, csv};
 use crate::plot::{Chart, PlotError};
 
 /// What a page is made of.
@@ -20,7 +20,7 @@ pub struct Page<'a> {
     /// The experiment's name.
     pub name: &'a str,
     /// What is said first.
-    pub verdict: &'a [Verdict],
+    pub findings: &'a [Finding],
     /// The motions to be shown; none for problems that have none.
     pub scenes: &'a [Scene],
     /// The charts.
@@ -74,7 +74,7 @@ struct Content<'a> {
     name: &'a str,
     style: &'static str,
     script: String,
-    verdict: &'a [Verdict],
+    findings: &'a [Finding],
     scenes: &'a [Scene],
     motions: Embedded,
     figures: Vec<FigureContent<'a>>,
@@ -115,7 +115,7 @@ impl Page<'_> {
             name: self.name,
             style: STYLE,
             script: SCRIPTS.join("\n"),
-            verdict: self.verdict,
+            findings: self.findings,
             scenes: self.scenes,
             motions: Embedded::new(&motions(self.scenes)?)?,
             figures: figures.collect::<Result<_, PageError>>()?,
@@ -198,7 +198,7 @@ mod tests {
             Table { name: "first-feasible", caption: caption.to_owned(), frame, is_curve: false };
         let page = Page {
             name,
-            verdict: &[],
+            findings: &[],
             scenes: &[],
             charts: &[],
             tables: &[table],

@@ -3,7 +3,7 @@
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
-use crate::analysis::{Run, best_run};
+use crate::analysis::Run;
 use crate::experiment::Plan;
 use crate::posture::{Posture, Satellite};
 use crate::problem::{Motion, Reorientation};
@@ -52,14 +52,12 @@ pub struct JointScene {
 }
 
 impl Scene {
-    /// A run's best motion, unless it has none.
-    pub fn of(plan: &Plan, run: &Run) -> Option<Self> {
-        let instance = &plan.instances[run.instance];
-        let problem = instance.reorientation()?;
+    /// A run's best motion.
+    fn of(plan: &Plan, run: &Run, problem: &Reorientation) -> Self {
         let task = problem.task();
         let motion = Motion::sample(problem, &run.coefficients, run.duration, INTERVALS);
-        Some(Self {
-            label: instance.label.clone(),
+        Self {
+            label: plan.instances[run.instance].label.clone(),
             optimiser: plan.optimisers[run.optimiser].label.clone(),
             seed: run.seed,
             cost: run.cost,
@@ -68,15 +66,14 @@ impl Scene {
             frames: frames(&task.robot, &motion),
             joints: joints(problem, &motion),
             goal: Posture::of(&task.robot, &task.goal.joints, task.goal.base),
-        })
+        }
     }
 }
 
-/// The best motions of the first instances that have any.
-pub fn scenes(plan: &Plan, runs: &[Run]) -> Vec<Scene> {
-    let best = |i| best_run(runs.iter().filter(move |run| run.instance == i));
-    let best = (0..plan.instances.len()).filter_map(best);
-    best.filter_map(|run| Scene::of(plan, run)).take(MOST_SCENES).collect()
+/// The first of an experiment's best motions: runs and their tasks.
+pub fn scenes(plan: &Plan, best: &[(&Run, &Reorientation)]) -> Vec<Scene> {
+    let first = best.iter().take(MOST_SCENES);
+    first.map(|(run, problem)| Scene::of(plan, run, problem)).collect()
 }
 
 fn frames(robot: &Robot, motion: &Motion) -> Vec<Posture> {

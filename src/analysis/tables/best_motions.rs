@@ -2,27 +2,27 @@
 
 use polars::prelude::*;
 
-use super::{Field, Table};
-use crate::analysis::{Run, best_run};
+use super::{Analysis, Table};
+use crate::analysis::Run;
 use crate::problem::Reorientation;
 
 /// One line an instance with a run that found something.
-pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
-    let best: Vec<&Run> = best(field).collect();
+pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
+    let best = analysis.best_runs();
     let problems: Vec<Option<&Reorientation>> =
-        best.iter().map(|run| field.plan.instances[run.instance].reorientation()).collect();
+        best.iter().map(|run| analysis.plan.instances[run.instance].reorientation()).collect();
     let limit = |order: usize| -> Vec<Option<f64>> {
         problems.iter().map(|p| p.and_then(|p| p.task().uniform_limit_deg(order))).collect()
     };
-    let cost = format!("best {}", field.plan.cost_symbol());
+    let cost = format!("best {}", analysis.plan.cost_symbol());
     let mut frame = df!(
-        "instance" => best.iter().map(|run| field.plan.instances[run.instance].label.as_str()).collect::<Vec<_>>(),
+        "instance" => best.iter().map(|run| analysis.plan.instances[run.instance].label.as_str()).collect::<Vec<_>>(),
         "weight_base" => problems.iter().map(|p| p.map(|p| p.task().base_weight)).collect::<Vec<_>>(),
         "rate_limit_deg_s" => limit(0),
         "acceleration_limit_deg_s2" => limit(1),
         "jerk_limit_deg_s3" => limit(2),
         "terms" => problems.iter().map(|p| p.map(|p| p.family().terms() as u64)).collect::<Vec<_>>(),
-        "optimiser" => best.iter().map(|run| field.optimiser(run.optimiser)).collect::<Vec<_>>(),
+        "optimiser" => best.iter().map(|run| analysis.optimiser(run.optimiser)).collect::<Vec<_>>(),
         "seed" => best.iter().map(|run| run.seed).collect::<Vec<_>>(),
         cost => best.iter().map(|run| run.cost).collect::<Vec<_>>(),
         "residual [°]" => best.iter().map(|run| run.residual_deg).collect::<Vec<_>>(),
@@ -42,13 +42,6 @@ pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
     Ok(Table::new("best", "The run with the lowest certified cost of each instance.", frame))
 }
 
-/// The lowest run of every instance.
-fn best<'a>(field: &'a Field<'_>) -> impl Iterator<Item = &'a Run> {
-    let mut by_instance: Vec<Vec<&Run>> = vec![Vec::new(); field.plan.instances.len()];
-    field.runs.iter().for_each(|run| by_instance[run.instance].push(run));
-    by_instance.into_iter().filter_map(|runs| best_run(runs.into_iter()))
-}
-
 /// Residuals that differ by less are the same, in degrees: searches end with some 10⁻⁶.
 const SAME_DEG: f64 = 1e-5;
 /// Durations that differ by a smaller share are the same.
@@ -66,10 +59,8 @@ fn same_but_for_weight(a: &Reorientation, b: &Reorientation) -> bool {
 
 /// Which best motions none of another weight of the same task but for the weight beats in residual and duration; none
 /// unless the weight varies.
-pub(super) fn pareto(field: &Field<'_>) -> PolarsResult<Option<Table>> {
-    let tasks = best(field)
-        .filter_map(|run| Some((run, field.plan.instances[run.instance].reorientation()?)));
-    let tasks: Vec<(&Run, &Reorientation)> = tasks.collect();
+pub(super) fn pareto(analysis: &Analysis<'_>) -> PolarsResult<Option<Table>> {
+    let tasks = analysis.best_motions();
     let varies = tasks.windows(2).any(|w| w[0].1.task().base_weight != w[1].1.task().base_weight);
     if !varies {
         return Ok(None);
@@ -85,7 +76,7 @@ pub(super) fn pareto(field: &Field<'_>) -> PolarsResult<Option<Table>> {
         !tasks.iter().any(|(other, its)| same_but_for_weight(its, problem) && dominates(other, run))
     };
     let frame = df!(
-        "instance" => tasks.iter().map(|(run, _)| field.plan.instances[run.instance].label.as_str()).collect::<Vec<_>>(),
+        "instance" => tasks.iter().map(|(run, _)| analysis.plan.instances[run.instance].label.as_str()).collect::<Vec<_>>(),
         "weight_base" => tasks.iter().map(|(_, problem)| problem.task().base_weight).collect::<Vec<_>>(),
         "residual [°]" => tasks.iter().map(|(run, _)| run.residual_deg).collect::<Vec<_>>(),
         "t_f [s]" => tasks.iter().map(|(run, _)| run.duration).collect::<Vec<_>>(),

@@ -1,27 +1,50 @@
-//! Best cost against evaluations, as a table.
+//! Best cost against evaluations, over the seeds.
 
 use polars::prelude::*;
+use rayon::prelude::*;
 
-use super::{Field, Table};
-use crate::analysis::{Curve, convergence};
+use super::{Analysis, Table};
+use crate::analysis::Run;
+use crate::analysis::statistics::quartiles;
+
+/// Points of a curve, spaced evenly on a logarithmic axis.
+const POINTS: usize = 200;
+
+/// Quartiles of the best cost so far over the runs of a group, as the searches evaluated their costs.
+struct Curve<'a> {
+    /// The optimiser's and the group's label.
+    labels: [&'a str; 2],
+    /// Evaluations made, ascending, and the quartiles at each.
+    points: Vec<(f64, [f64; 3])>,
+}
+
+/// A curve holds where every run of the group still counts: up to the smallest budget among them. A run that ended early
+/// keeps the best it had.
+fn curve<'a>(analysis: &Analysis<'a>, group: &[&Run]) -> Curve<'a> {
+    let budget = group.iter().map(|run| run.budget).min().unwrap_or(1);
+    let last = (budget as f64).ln();
+    let mut evaluations: Vec<f64> =
+        (0..POINTS).map(|i| (last * i as f64 / (POINTS - 1) as f64).exp().round()).collect();
+    evaluations.dedup();
+    let point = |made: f64| (made, quartiles(group.iter().map(|run| run.best_at(made as u64))));
+    Curve {
+        labels: analysis.labels(group),
+        points: evaluations.into_par_iter().map(point).collect(),
+    }
+}
 
 /// One line an optimiser, group and place on the curve.
-pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
-    let curves = convergence(field.plan, field.runs);
-    let labels = |label: fn(&Curve) -> &str| -> Vec<&str> {
-        let all = curves.iter().map(|curve| (label(curve), curve.evaluations.len()));
-        all.flat_map(|(label, count)| std::iter::repeat_n(label, count)).collect()
-    };
-    let quartile = |q: usize| -> Vec<f64> {
-        curves.iter().flat_map(|curve| curve.quartiles.iter().map(move |all| all[q])).collect()
-    };
+pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
+    let curves: Vec<Curve<'_>> =
+        analysis.groups.iter().map(|group| curve(analysis, group)).collect();
+    let rows = || curves.iter().flat_map(|c| c.points.iter().map(move |point| (c.labels, point)));
     let frame = df!(
-        "group" => labels(|curve| &curve.group),
-        "optimiser" => labels(|curve| &curve.optimiser),
-        "evaluations" => curves.iter().flat_map(|c| c.evaluations.iter().copied()).collect::<Vec<_>>(),
-        "quartile 1" => quartile(0),
-        "median" => quartile(1),
-        "quartile 3" => quartile(2),
+        "group" => rows().map(|(labels, _)| labels[1]).collect::<Vec<_>>(),
+        "optimiser" => rows().map(|(labels, _)| labels[0]).collect::<Vec<_>>(),
+        "evaluations" => rows().map(|(_, point)| point.0).collect::<Vec<_>>(),
+        "quartile 1" => rows().map(|(_, point)| point.1[0]).collect::<Vec<_>>(),
+        "median" => rows().map(|(_, point)| point.1[1]).collect::<Vec<_>>(),
+        "quartile 3" => rows().map(|(_, point)| point.1[2]).collect::<Vec<_>>(),
     )?;
     let caption = "Quartiles over the runs of the best cost so far, as the search evaluated it, after so many \
         evaluations, up to the smallest budget of the group.";

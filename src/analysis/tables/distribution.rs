@@ -2,8 +2,8 @@
 
 use polars::prelude::*;
 
-use super::fixed_target::{times, trial};
-use super::{Field, Table};
+use super::fixed_target::times;
+use super::{Analysis, Table};
 use crate::analysis::Run;
 use crate::analysis::statistics::{Trial, simulated_restarts};
 use crate::oracle::Rng;
@@ -46,10 +46,10 @@ impl Times {
 type Curve<'a> = ([&'a str; 2], Times);
 
 /// One curve an optimiser and group, and one an optimiser over all.
-pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
-    let budget = field.runs.iter().map(|run| run.budget).max().unwrap_or(1);
+pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
+    let budget = analysis.runs.iter().map(|run| run.budget).max().unwrap_or(1);
     let grid = grid(10.0 * budget as f64);
-    let curves = curves(field);
+    let curves = curves(analysis);
     let rows = || curves.iter().flat_map(|curve| grid.iter().map(move |&at| (curve, at)));
     let frame = df!(
         "group" => rows().map(|((labels, _), _)| labels[1]).collect::<Vec<_>>(),
@@ -65,18 +65,18 @@ pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
     Ok(Table::curve("running-time-distribution", caption, frame))
 }
 
-fn curves<'a>(field: &'a Field<'_>) -> Vec<Curve<'a>> {
-    let mut all: Vec<Times> = field.plan.optimisers.iter().map(|_| Times::default()).collect();
+fn curves<'a>(analysis: &'a Analysis<'_>) -> Vec<Curve<'a>> {
+    let mut all: Vec<Times> = analysis.plan.optimisers.iter().map(|_| Times::default()).collect();
     let mut curves: Vec<Curve<'_>> = Vec::new();
-    for group in &field.groups {
-        let times = times_of(field, group);
+    for group in &analysis.groups {
+        let times = times_of(analysis, group);
         all[group[0].optimiser].extend(&times);
-        curves.push((field.labels(group), times.sorted()));
+        curves.push((analysis.labels(group), times.sorted()));
     }
     let first = curves.first().map(|(labels, _)| labels[1]);
     if curves.iter().any(|(labels, _)| Some(labels[1]) != first) {
         let over_all = all.into_iter().enumerate().filter(|(_, times)| !times.runs.is_empty());
-        curves.extend(over_all.map(|(i, times)| ([field.optimiser(i), "all"], times.sorted())));
+        curves.extend(over_all.map(|(i, times)| ([analysis.optimiser(i), "all"], times.sorted())));
     }
     curves
 }
@@ -95,15 +95,15 @@ fn share(times: &[f64], limit: f64) -> f64 {
 }
 
 /// The running times of the runs of one optimiser on one group of instances.
-fn times_of(field: &Field<'_>, group: &[&Run]) -> Times {
+fn times_of(analysis: &Analysis<'_>, group: &[&Run]) -> Times {
     let mut by_instance: Vec<&Run> = group.to_vec();
     by_instance.sort_by_key(|run| run.instance);
     let mut found = Times::default();
     let mut rng = Rng::new(1);
     for runs in by_instance.chunk_by(|a, b| a.instance == b.instance) {
-        let least = field.targets.least[runs[0].instance];
+        let least = analysis.targets.least[runs[0].instance];
         for target in differences().map(|difference| least + difference) {
-            let trials: Vec<Trial> = runs.iter().map(|run| trial(run, target)).collect();
+            let trials: Vec<Trial> = runs.iter().map(|run| run.trial(target)).collect();
             found.runs.extend(times(&trials));
             found.restarted.extend(simulated_restarts(&trials, RESTARTS, |n| rng.index(n)));
         }

@@ -4,8 +4,7 @@ use polars::prelude::*;
 use rayon::prelude::*;
 
 use super::distribution::differences;
-use super::fixed_target::trial;
-use super::{Field, Table};
+use super::{Analysis, Table};
 use crate::analysis::Run;
 use crate::analysis::statistics::{Trial, expected_running_time};
 
@@ -16,13 +15,13 @@ struct Line<'a> {
 }
 
 /// One line an optimiser, group and target.
-pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
+pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     let of = |group| differences().map(move |difference| Line { group, difference });
-    let lines: Vec<Line<'_>> = field.groups.iter().flat_map(|group| of(group)).collect();
-    let told: Vec<(u64, f64)> = lines.par_iter().map(|line| told(field, line)).collect();
+    let lines: Vec<Line<'_>> = analysis.groups.iter().flat_map(|group| of(group)).collect();
+    let told: Vec<(u64, f64)> = lines.par_iter().map(|line| told(analysis, line)).collect();
     let frame = df!(
-        "group" => lines.iter().map(|l| field.labels(l.group)[1]).collect::<Vec<_>>(),
-        "optimiser" => lines.iter().map(|l| field.labels(l.group)[0]).collect::<Vec<_>>(),
+        "group" => lines.iter().map(|l| analysis.labels(l.group)[1]).collect::<Vec<_>>(),
+        "optimiser" => lines.iter().map(|l| analysis.labels(l.group)[0]).collect::<Vec<_>>(),
         "above least" => lines.iter().map(|l| l.difference).collect::<Vec<_>>(),
         "runs" => lines.iter().map(|l| l.group.len() as u64).collect::<Vec<_>>(),
         "successes" => told.iter().map(|told| told.0).collect::<Vec<_>>(),
@@ -35,9 +34,9 @@ pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
 }
 
 /// Successes and the expected running time.
-fn told(field: &Field<'_>, line: &Line<'_>) -> (u64, f64) {
-    let target = |run: &Run| field.targets.least[run.instance] + line.difference;
-    let trials: Vec<Trial> = line.group.iter().map(|run| trial(run, target(run))).collect();
+fn told(analysis: &Analysis<'_>, line: &Line<'_>) -> (u64, f64) {
+    let target = |run: &Run| analysis.targets.least[run.instance] + line.difference;
+    let trials: Vec<Trial> = line.group.iter().map(|run| run.trial(target(run))).collect();
     let successes = trials.iter().filter(|trial| trial.solved).count();
     (successes as u64, expected_running_time(&trials))
 }
@@ -46,7 +45,7 @@ fn told(field: &Field<'_>, line: &Line<'_>) -> (u64, f64) {
 mod tests {
     use super::*;
     use crate::analysis::handmade::{plan, runs};
-    use crate::analysis::{runs::groups, targets};
+    use crate::analysis::targets;
 
     /// Evaluations of all runs for each success; the least value of the function is 0.
     #[test]
@@ -60,9 +59,8 @@ mod tests {
             _ => vec![(20, 5.0)],
         });
         let targets = targets(&plan, &runs);
-        let field =
-            Field { plan: &plan, runs: &runs, groups: groups(&plan, &runs), targets: &targets };
-        let frame = table(&field).unwrap().frame;
+        let analysis = Analysis::new(&plan, &runs, &targets);
+        let frame = table(&analysis).unwrap().frame;
         let times = frame.column("expected running time").unwrap().f64().unwrap();
         let successes = frame.column("successes").unwrap().u64().unwrap();
         assert_eq!(frame.height(), 51);

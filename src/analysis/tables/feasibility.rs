@@ -2,19 +2,19 @@
 
 use polars::prelude::*;
 
-use super::{Field, Table};
+use super::{Analysis, Table};
 use crate::analysis::Run;
 use crate::analysis::statistics::quartiles;
 
 /// One line a group and optimiser.
-pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
-    let groups = &field.groups;
+pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
+    let groups = &analysis.groups;
     let first = |run: &&Run| run.first_feasible.map_or(f64::INFINITY, |first| first as f64);
     let quartiles: Vec<_> = groups.iter().map(|g| quartiles(g.iter().map(first))).collect();
     let kept = |group: &[&Run]| group.iter().filter(|run| run.first_feasible.is_some()).count();
     let frame = df!(
-        "group" => groups.iter().map(|g| field.labels(g)[1]).collect::<Vec<_>>(),
-        "optimiser" => groups.iter().map(|g| field.labels(g)[0]).collect::<Vec<_>>(),
+        "group" => groups.iter().map(|g| analysis.labels(g)[1]).collect::<Vec<_>>(),
+        "optimiser" => groups.iter().map(|g| analysis.labels(g)[0]).collect::<Vec<_>>(),
         "runs" => groups.iter().map(|g| g.len() as u64).collect::<Vec<_>>(),
         "feasible" => groups.iter().map(|g| kept(g) as u64).collect::<Vec<_>>(),
         "quartile 1" => quartiles.iter().map(|q| q[0]).collect::<Vec<_>>(),

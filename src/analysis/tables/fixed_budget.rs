@@ -3,22 +3,22 @@
 use polars::prelude::*;
 use rayon::prelude::*;
 
-use super::{Field, Table, interval};
+use super::{Analysis, Table, interval};
 use crate::analysis::statistics::{median, quartiles};
 
 /// One line a group, number of evaluations and optimiser.
-pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
+pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     struct Line<'a> {
         labels: [&'a str; 2],
         evaluations: u64,
         costs: Vec<f64>,
     }
     let mut lines = Vec::new();
-    for group in &field.groups {
+    for group in &analysis.groups {
         let budget = group.iter().map(|run| run.budget).min().unwrap_or(1);
         for evaluations in budgets(budget) {
             let costs = group.iter().map(|run| run.best_at(evaluations)).collect();
-            lines.push(Line { labels: field.labels(group), evaluations, costs });
+            lines.push(Line { labels: analysis.labels(group), evaluations, costs });
         }
     }
     let intervals: Vec<[f64; 2]> = lines

@@ -3,21 +3,20 @@
 use polars::prelude::*;
 use rayon::prelude::*;
 
-use super::{Field, Table, interval};
-use crate::analysis::Run;
+use super::{Analysis, Table, interval};
 use crate::analysis::statistics::{Trial, expected_running_time, quartiles};
 
 /// One line an instance and target.
-pub(super) fn targets(field: &Field<'_>) -> PolarsResult<Table> {
+pub(super) fn targets(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     let mut columns = (vec![], vec![], vec![], vec![]);
     for (i, (instance, values)) in
-        field.plan.instances.iter().zip(&field.targets.values).enumerate()
+        analysis.plan.instances.iter().zip(&analysis.targets.values).enumerate()
     {
         for (k, value) in values.iter().enumerate() {
             columns.0.push(instance.label.as_str());
-            columns.1.push(field.target_label_of(k, &instance.group));
+            columns.1.push(analysis.target_label_of(k, &instance.group));
             columns.2.push(*value);
-            columns.3.push(field.targets.source(i));
+            columns.3.push(analysis.targets.source(i));
         }
     }
     let frame = df!(
@@ -41,8 +40,8 @@ struct Line<'a> {
 }
 
 /// One line a group, target and optimiser.
-pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
-    let lines = lines(field);
+pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
+    let lines = lines(analysis);
     let intervals: Vec<[f64; 2]> =
         lines.par_iter().map(|line| interval(&line.trials, expected_running_time)).collect();
     let quartiles: Vec<[f64; 3]> =
@@ -71,28 +70,22 @@ pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
     Ok(Table::new("fixed-target", caption, frame))
 }
 
-fn lines<'a>(field: &'a Field<'_>) -> Vec<Line<'a>> {
+fn lines<'a>(analysis: &'a Analysis<'_>) -> Vec<Line<'a>> {
     let mut lines = Vec::new();
-    for k in 0..field.targets.count() {
-        for group in &field.groups {
-            let [optimiser, label] = field.labels(group);
+    for k in 0..analysis.targets.count() {
+        for group in &analysis.groups {
+            let [optimiser, label] = analysis.labels(group);
             let trials: Vec<Trial> = group
                 .iter()
-                .filter_map(|run| Some(trial(run, *field.targets.values[run.instance].get(k)?)))
+                .filter_map(|run| Some(run.trial(*analysis.targets.values[run.instance].get(k)?)))
                 .collect();
             if !trials.is_empty() {
-                let target = field.target_label_of(k, label);
+                let target = analysis.target_label_of(k, label);
                 lines.push(Line { optimiser, group: label, target, trials });
             }
         }
     }
     lines
-}
-
-/// What a run says about a target.
-pub(super) fn trial(run: &Run, target: f64) -> Trial {
-    let hit = run.hit(target);
-    Trial { evaluations: hit.unwrap_or(run.evaluations) as f64, solved: hit.is_some() }
 }
 
 /// Running times, infinite where the target was not reached.

@@ -17,10 +17,8 @@ use polars::prelude::*;
 
 pub use motion::motion_table;
 
-use super::runs::groups;
 use super::statistics::Bootstrap;
-use super::{Run, Targets, summary};
-use crate::experiment::Plan;
+use super::{Analysis, summary};
 use crate::oracle::Rng;
 
 /// One table of a report.
@@ -46,15 +44,6 @@ impl Table {
     }
 }
 
-/// What all tables are made of.
-struct Field<'a> {
-    plan: &'a Plan,
-    runs: &'a [Run],
-    /// The runs by optimiser and group of instances.
-    groups: Vec<Vec<&'a Run>>,
-    targets: &'a Targets,
-}
-
 /// The names that tables may have.
 pub const NAMES: [&str; 18] = [
     "summary",
@@ -77,68 +66,42 @@ pub const NAMES: [&str; 18] = [
     "motion",
 ];
 
-/// Every table that the runs of a plan give.
-pub fn tables(plan: &Plan, runs: &[Run], targets: &Targets) -> PolarsResult<Vec<Table>> {
-    let field = Field { plan, runs, groups: groups(plan, runs), targets };
-    let caption = "Certified best costs over all runs; a failed run counts as infinite.";
-    let mut tables = vec![Table::new("summary", caption, summary(plan, runs, targets)?)];
-    tables.push(best_motions::table(&field)?);
-    tables.extend(best_motions::pareto(&field)?);
-    tables.push(fixed_target::targets(&field)?);
-    tables.push(fixed_target::table(&field)?);
-    tables.push(fixed_budget::table(&field)?);
-    tables.push(feasibility::table(&field)?);
-    if let Some(blocks) = ranks::Blocks::of(&field) {
-        tables.push(ranks::friedman_table(&field, &blocks)?);
-        tables.push(ranks::table(&field, &blocks)?);
-        tables.push(pairs::table(&field, &blocks)?);
-        tables.push(ranks::blocks_table(&field, &blocks)?);
-    }
-    tables.push(runs::table(&field)?);
-    tables.push(convergence::table(&field)?);
-    tables.push(expected_running_time::table(&field)?);
-    tables.push(distribution::table(&field)?);
-    tables.extend(profiles::tables(&field)?);
-    let (stored, planned) = (runs.len(), plan.runs.len());
-    if stored < planned {
-        let note = format!(" Only {stored} of {planned} runs are stored so far.");
-        for table in &mut tables {
-            table.caption += &note;
+impl Analysis<'_> {
+    /// Every table that the runs give.
+    pub fn tables(&self) -> PolarsResult<Vec<Table>> {
+        let caption = "Certified best costs over all runs; a failed run counts as infinite.";
+        let summary = summary(self.plan, self.runs, self.targets)?;
+        let mut tables = vec![Table::new("summary", caption, summary)];
+        tables.push(best_motions::table(self)?);
+        tables.extend(best_motions::pareto(self)?);
+        tables.push(fixed_target::targets(self)?);
+        tables.push(fixed_target::table(self)?);
+        tables.push(fixed_budget::table(self)?);
+        tables.push(feasibility::table(self)?);
+        if let Some(blocks) = &self.blocks {
+            tables.push(ranks::friedman_table(blocks)?);
+            tables.push(ranks::table(self, blocks)?);
+            tables.push(pairs::table(self, blocks)?);
+            tables.push(ranks::blocks_table(self, blocks)?);
         }
-    }
-    Ok(tables)
-}
-
-impl Field<'_> {
-    /// The label of an optimiser.
-    fn optimiser(&self, index: usize) -> &str {
-        &self.plan.optimisers[index].label
-    }
-
-    /// What to call the k-th target of all instances.
-    fn target_label(&self, k: usize) -> String {
-        let all = 0..self.plan.instances.len();
-        self.targets.label(k, self.plan.cost_symbol(), all)
-    }
-
-    /// What to call the k-th target of a group.
-    fn target_label_of(&self, k: usize, group: &str) -> String {
-        let all = self.plan.instances.iter().enumerate();
-        let own = all.filter(|(_, instance)| instance.group == group).map(|(i, _)| i);
-        self.targets.label(k, self.plan.cost_symbol(), own)
-    }
-
-    /// The label of the optimiser and of the group that some runs share.
-    fn labels(&self, group: &[&Run]) -> [&str; 2] {
-        let instance = &self.plan.instances[group[0].instance];
-        [self.optimiser(group[0].optimiser), &instance.group]
+        tables.push(runs::table(self)?);
+        tables.push(convergence::table(self)?);
+        tables.push(expected_running_time::table(self)?);
+        tables.push(distribution::table(self)?);
+        tables.extend(profiles::tables(self)?);
+        let (stored, planned) = (self.runs.len(), self.plan.runs.len());
+        if stored < planned {
+            let note = format!(" Only {stored} of {planned} runs are stored so far.");
+            for table in &mut tables {
+                table.caption += &note;
+            }
+        }
+        Ok(tables)
     }
 }
 
 /// Level of the bootstrap's intervals.
 const LEVEL: f64 = 0.95;
-/// Level of the tests.
-const ALPHA: f64 = 0.05;
 
 /// The bootstrap's interval of a statistic: 1000 resamples; of a sample of more than 1000, as many as
 /// make a million draws, 400 at least.

@@ -4,22 +4,22 @@ use std::collections::BTreeMap;
 
 use polars::prelude::*;
 
-use super::{Field, Table};
+use super::{Analysis, Table};
 use crate::analysis::statistics::{ProfileStep, data_profiles, performance_profiles};
 
 /// Both profiles, a curve an optimiser and target. A problem is an instance with a seed; those that an
 /// optimiser has not tried yet are left out.
-pub(super) fn tables(field: &Field<'_>) -> PolarsResult<[Table; 2]> {
+pub(super) fn tables(analysis: &Analysis<'_>) -> PolarsResult<[Table; 2]> {
     let (mut performance, mut data) = (Curves::default(), Curves::default());
     let mut most = 0;
-    for k in 0..field.targets.count() {
-        let target = &field.target_label(k);
-        let (times, dimensions) = problems(field, k);
+    for k in 0..analysis.targets.count() {
+        let target = &analysis.target_label(k);
+        let (times, dimensions) = problems(analysis, k);
         most = most.max(times.len());
-        performance.add(field, target, performance_profiles(&times), 1.0);
-        data.add(field, target, data_profiles(&times, &dimensions), 0.0);
+        performance.add(analysis, target, performance_profiles(&times), 1.0);
+        data.add(analysis, target, data_profiles(&times, &dimensions), 0.0);
     }
-    let pool: Vec<&str> = field.plan.optimisers.iter().map(|o| o.label.as_str()).collect();
+    let pool: Vec<&str> = analysis.plan.optimisers.iter().map(|o| o.label.as_str()).collect();
     let pool = pool.join(", ");
     Ok([
         Table::curve(
@@ -43,18 +43,18 @@ pub(super) fn tables(field: &Field<'_>) -> PolarsResult<[Table; 2]> {
 }
 
 /// Evaluations to the k-th target for every problem and optimiser, and every problem's dimension.
-fn problems(field: &Field<'_>, k: usize) -> (Vec<Vec<f64>>, Vec<usize>) {
-    let solvers = field.plan.optimisers.len();
+fn problems(analysis: &Analysis<'_>, k: usize) -> (Vec<Vec<f64>>, Vec<usize>) {
+    let solvers = analysis.plan.optimisers.len();
     let mut rows: BTreeMap<(usize, u64), Vec<Option<f64>>> = BTreeMap::new();
-    for run in field.runs {
-        if let Some(&target) = field.targets.values[run.instance].get(k) {
+    for run in analysis.runs {
+        if let Some(&target) = analysis.targets.values[run.instance].get(k) {
             let row = rows.entry((run.instance, run.seed)).or_insert_with(|| vec![None; solvers]);
             row[run.optimiser] = Some(run.hit(target).map_or(f64::INFINITY, |hit| hit as f64));
         }
     }
     let complete = |(&(instance, _), row): (&(usize, u64), &Vec<Option<f64>>)| {
         let row: Option<Vec<f64>> = row.iter().copied().collect();
-        row.map(|row| (row, field.plan.instances[instance].dimension()))
+        row.map(|row| (row, analysis.plan.instances[instance].dimension()))
     };
     rows.iter().filter_map(complete).unzip()
 }
@@ -70,7 +70,7 @@ impl Curves {
     /// Every curve begins with a share of 0, be it where it ends as well.
     fn add(
         &mut self,
-        field: &Field<'_>,
+        analysis: &Analysis<'_>,
         target: &str,
         profiles: Vec<Vec<ProfileStep>>,
         first: f64,
@@ -79,7 +79,7 @@ impl Curves {
         for (optimiser, steps) in profiles.into_iter().enumerate() {
             for step in std::iter::once(zero).chain(steps) {
                 self.targets.push(target.to_owned());
-                self.optimisers.push(field.optimiser(optimiser).to_owned());
+                self.optimisers.push(analysis.optimiser(optimiser).to_owned());
                 self.steps.push(step);
             }
         }

@@ -2,19 +2,19 @@
 
 use polars::prelude::*;
 
-use super::{Field, Table};
+use super::{Analysis, Table};
 use crate::analysis::Run;
 use crate::experiment::Instance;
 
 /// One line a stored run, in the plan's order. Nothing in it depends on the machine's speed.
-pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
-    let reals = |value: fn(&Run) -> f64| -> Vec<f64> { field.runs.iter().map(value).collect() };
-    let counts = |value: fn(&Run) -> u64| -> Vec<u64> { field.runs.iter().map(value).collect() };
-    let cost = format!("best {}", field.plan.cost_symbol());
+pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
+    let reals = |value: fn(&Run) -> f64| -> Vec<f64> { analysis.runs.iter().map(value).collect() };
+    let counts = |value: fn(&Run) -> u64| -> Vec<u64> { analysis.runs.iter().map(value).collect() };
+    let cost = format!("best {}", analysis.plan.cost_symbol());
     let mut frame = df!(
-        "instance" => labels(field, |instance| &instance.label),
-        "group" => labels(field, |instance| &instance.group),
-        "optimiser" => field.runs.iter().map(|run| field.optimiser(run.optimiser)).collect::<Vec<_>>(),
+        "instance" => labels(analysis, |instance| &instance.label),
+        "group" => labels(analysis, |instance| &instance.group),
+        "optimiser" => analysis.runs.iter().map(|run| analysis.optimiser(run.optimiser)).collect::<Vec<_>>(),
         "seed" => counts(|run| run.seed),
         cost => reals(|run| run.cost),
         "residual [°]" => reals(|run| run.residual_deg),
@@ -22,7 +22,7 @@ pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
         "evaluations" => counts(|run| run.evaluations),
         "budget" => counts(|run| run.budget),
     )?;
-    if !field.plan.instances.iter().any(Instance::is_task) {
+    if !analysis.plan.instances.iter().any(Instance::is_task) {
         frame = frame.drop_many(["residual [°]", "t_f [s]"]);
     }
     let caption = "All stored runs with their certified best costs, residuals and durations; a failed run's cost is \
@@ -30,6 +30,6 @@ pub(super) fn table(field: &Field<'_>) -> PolarsResult<Table> {
     Ok(Table::curve("runs", caption, frame))
 }
 
-fn labels<'a>(field: &Field<'a>, label: fn(&Instance) -> &str) -> Vec<&'a str> {
-    field.runs.iter().map(|run| label(&field.plan.instances[run.instance])).collect()
+fn labels<'a>(analysis: &Analysis<'a>, label: fn(&Instance) -> &str) -> Vec<&'a str> {
+    analysis.runs.iter().map(|run| label(&analysis.plan.instances[run.instance])).collect()
 }

@@ -1,0 +1,111 @@
+//! How good the best is.
+
+use super::Finding;
+use super::words::{list, number, off_the_goal, plural, span};
+use crate::analysis::{Analysis, Run};
+use crate::experiment::Instance;
+use crate::problem::{BestKnown, Reorientation};
+
+const QUESTION: &str = "How good is it?";
+
+/// By which share of it a cost may exceed the best known and be the same.
+const REACHED: f64 = 1e-6;
+/// Residuals below count as none \[°\].
+const AT_GOAL_DEG: f64 = 0.01;
+/// COCO's final precision, doi 10.1080/10556788.2020.1808977.
+const SOLVED: f64 = 1e-8;
+
+/// A best run with the task it is on.
+type OnTask<'a> = (&'a Run, &'a Reorientation);
+
+/// On the tasks and on the other problems of an experiment.
+pub(super) fn findings(analysis: &Analysis<'_>) -> Vec<Finding> {
+    let instances = &analysis.plan.instances;
+    let tasks = instances.iter().filter(|instance| instance.is_task()).count();
+    let best = analysis.best_motions();
+    let on_tasks = match best.as_slice() {
+        [] => None,
+        [only] if tasks == 1 => Some(one_task(analysis, *only)),
+        best => Some(many_tasks(best, tasks)),
+    };
+    let told = on_tasks.into_iter().chain(functions(analysis));
+    told.map(|answer| Finding::new(QUESTION, answer)).collect()
+}
+
+fn one_task(analysis: &Analysis<'_>, (run, problem): OnTask<'_>) -> String {
+    let known = BestKnown::of(problem)
+        .map_or_else(|| "no best is known".to_owned(), |known| known.compared_with(run.cost));
+    format!(
+        "The best motion is by {}: J {:.6} ({known}), {} s, and the base ends {}.",
+        analysis.optimiser(run.optimiser),
+        run.cost,
+        number(run.duration),
+        off_the_goal(run.residual_deg)
+    )
+}
+
+fn many_tasks(best: &[OnTask<'_>], tasks: usize) -> String {
+    let gap = |(run, problem): &OnTask<'_>| {
+        BestKnown::of(problem).map(|known| (run.cost - known.j) / known.j)
+    };
+    let gaps: Vec<f64> = best.iter().filter_map(gap).collect();
+    let reached = gaps.iter().filter(|&&gap| gap <= REACHED).count();
+    let beaten = gaps.iter().filter(|&&gap| gap < -REACHED).count();
+    let all = plural(tasks, "instance");
+    let told = match gaps.len() {
+        0 => format!("No best cost is known of the {all}."),
+        known => {
+            let known = plural(known, "instance");
+            let beaten =
+                if beaten > 0 { format!(", and beaten on {beaten}") } else { String::new() };
+            let furthest = 100.0 * gaps.iter().copied().fold(0.0, f64::max);
+            let missed = if reached < gaps.len() {
+                format!("; elsewhere the best is up to {} % above", number(furthest))
+            } else {
+                String::new()
+            };
+            format!(
+                "The best known cost was reached within 10⁻⁶ on {reached} of the {known} that have one{beaten}{missed}."
+            )
+        }
+    };
+    let home = best.iter().filter(|(run, _)| run.residual_deg <= AT_GOAL_DEG).count();
+    let durations: Vec<f64> = best.iter().map(|(run, _)| run.duration).collect();
+    format!(
+        "{told} The base ends within 0.01° of the goal on {home} of {all}, and the best motions take {}.",
+        span(&durations, " s")
+    )
+}
+
+/// Who solves how many of the instances whose least value is known.
+fn functions(analysis: &Analysis<'_>) -> Option<String> {
+    let instances = &analysis.plan.instances;
+    let least = |instance: &Instance| instance.known_cost().filter(|_| !instance.is_task());
+    let least: Vec<Option<f64>> = instances.iter().map(least).collect();
+    let known = least.iter().flatten().count();
+    if known == 0 {
+        return None;
+    }
+    let mut solved = vec![vec![false; instances.len()]; analysis.plan.optimisers.len()];
+    for run in analysis.runs {
+        solved[run.optimiser][run.instance] |=
+            least[run.instance].is_some_and(|least| run.cost - least <= SOLVED);
+    }
+    let count = |solved: &Vec<bool>| solved.iter().filter(|&&solved| solved).count();
+    let mut by_count: Vec<(usize, &str)> =
+        solved.iter().enumerate().map(|(o, s)| (count(s), analysis.optimiser(o))).collect();
+    by_count.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
+    let unsolved = known - (0..instances.len()).filter(|&i| solved.iter().any(|s| s[i])).count();
+    let (most, _) = by_count.first()?;
+    if *most == 0 {
+        return Some("No run solved an instance to 10⁻⁸.".to_owned());
+    }
+    let told: Vec<String> =
+        by_count.iter().map(|(count, name)| format!("{name} {count}")).collect();
+    let rest = match unsolved {
+        0 => String::new(),
+        n => format!(" Nobody solved {n} of them."),
+    };
+    let known = plural(known, "instance");
+    Some(format!("Of {known}, solved to 10⁻⁸ in any run: {}.{rest}", list(&told)))
+}
