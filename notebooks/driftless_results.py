@@ -11,6 +11,7 @@ import subprocess
 from pathlib import Path
 
 import matplotlib
+import PIL.Image
 import polars as pl
 from IPython.display import Image, display
 
@@ -89,7 +90,8 @@ def show(figure, name, alt):
     """Shows a figure at its size in print, and keeps it as `target/notebooks/figures/NAME.pdf`."""
     (WORK / "figures").mkdir(parents=True, exist_ok=True)
     figure.savefig(WORK / "figures" / f"{name}.pdf", metadata={"CreationDate": None})
-    png = io.BytesIO()
-    figure.savefig(png, format="png", metadata={"Software": None})
+    drawn, png = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, format="png")
+    PIL.Image.open(drawn).convert("RGB").quantize(96).save(png, format="png", optimize=True)  # a third of the size
     display(Image(png.getvalue(), width=round(figure.get_figwidth() * 96), alt=alt))
     matplotlib.pyplot.close(figure)
