@@ -39,7 +39,8 @@ def driftless(*arguments):
         raise FileNotFoundError(f"{PROGRAM} is missing: run notebooks/run.sh, or cargo build --release")
     WORK.mkdir(parents=True, exist_ok=True)
     command = [str(argument) for argument in arguments]
-    done = subprocess.run([PROGRAM, *command], cwd=WORK, capture_output=True, text=True)
+    plain = {name: value for name, value in os.environ.items() if "COLOR" not in name}  # a kernel asks for colours
+    done = subprocess.run([PROGRAM, *command], cwd=WORK, capture_output=True, text=True, env={**plain, "NO_COLOR": "1"})
     if done.returncode != 0:
         raise RuntimeError(f"`driftless {' '.join(command)}` ended with status {done.returncode}:\n{done.stderr}")
     return done.stdout
@@ -92,6 +93,7 @@ def show(figure, name, alt):
     figure.savefig(WORK / "figures" / f"{name}.pdf", metadata={"CreationDate": None})
     drawn, png = io.BytesIO(), io.BytesIO()
     figure.savefig(drawn, format="png")
-    PIL.Image.open(drawn).convert("RGB").quantize(96).save(png, format="png", optimize=True)  # a third of the size
+    few_colours = PIL.Image.open(drawn).convert("RGB").quantize(256, PIL.Image.Quantize.MAXCOVERAGE, dither=0)
+    few_colours.save(png, format="png", optimize=True)  # a third of the size
     display(Image(png.getvalue(), width=round(figure.get_figwidth() * 96), alt=alt))
     matplotlib.pyplot.close(figure)
