@@ -35,6 +35,7 @@ cargo build --release --locked
 export JUPYTER_CONFIG_DIR=$folder/jupyter/config JUPYTER_DATA_DIR=$folder/jupyter/data
 export IPYTHONDIR=$folder/jupyter/ipython PYTHONDONTWRITEBYTECODE=1
 unset JUPYTER_PATH JUPYTER_CONFIG_PATH
+mkdir -p "$IPYTHONDIR"
 if [ "$*" = --check ]; then
     where=(--output-dir "$folder/check")
 else
