@@ -14,6 +14,7 @@ import matplotlib
 import PIL.Image
 import polars as pl
 from IPython.display import Image, display
+from matplotlib import pyplot as plt
 
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
@@ -23,7 +24,7 @@ MM = 1 / 25.4  # inches
 ONE_COLUMN, TWO_COLUMNS = 88 * MM, 180 * MM
 
 matplotlib.use("agg")
-matplotlib.style.use(ROOT / "notebooks" / "driftless.mplstyle")
+plt.style.use(ROOT / "notebooks" / "driftless.mplstyle")
 pl.Config(
     tbl_hide_dataframe_shape=True,
     tbl_hide_column_data_types=True,
@@ -96,4 +97,4 @@ def show(figure, name, alt):
     few_colours = PIL.Image.open(drawn).convert("RGB").quantize(256, PIL.Image.Quantize.MAXCOVERAGE, dither=0)
     few_colours.save(png, format="png", optimize=True)  # a third of the size
     display(Image(png.getvalue(), width=round(figure.get_figwidth() * 96), alt=alt))
-    matplotlib.pyplot.close(figure)
+    plt.close(figure)
