@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Makes a Python environment, builds the program and executes all notebooks in place; they run the
+# experiments that they read. Needs Rust, a C compiler, Python 3.11 or later and PyPI.
+#   notebooks/run.sh            writes the outputs into the notebooks
+#   notebooks/run.sh --check    executes copies below target/ and fails if one raises
+# What is stored in target/notebooks/results is not done again.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+fail() {
+    echo "notebooks/run.sh: $1" >&2
+    exit "${2:-1}"
+}
+
+case "$*" in
+    "" | --check) ;;
+    -h | --help) sed -n '2,6s/^# \{0,1\}//p' notebooks/run.sh; exit ;;
+    *) fail "unknown arguments: $* (there is only --check)" 2 ;;
+esac
+command -v cargo > /dev/null || fail "cargo is missing; install the Rust toolchain"
+python=${PYTHON:-python3}
+"$python" -c 'import sys, venv; sys.exit(sys.version_info < (3, 11))' \
+    || fail "\`$python\` is not Python 3.11 or later with venv; name another in PYTHON"
+
+folder=${CARGO_TARGET_DIR:-target}/notebooks
+mkdir -p "$folder"
+folder=$(cd "$folder" && pwd)
+echo "== Python environment"
+[ -x "$folder/venv/bin/pip" ] || "$python" -m venv "$folder/venv"
+"$folder/venv/bin/python" -m pip install --quiet --disable-pip-version-check -r notebooks/requirements.txt
+echo "== program"
+cargo build --release --locked
+
+# The settings and kernels of whoever runs this stay out of it.
+export JUPYTER_CONFIG_DIR=$folder/jupyter/config JUPYTER_DATA_DIR=$folder/jupyter/data
+export IPYTHONDIR=$folder/jupyter/ipython PYTHONDONTWRITEBYTECODE=1
+unset JUPYTER_PATH JUPYTER_CONFIG_PATH
+mkdir -p "$IPYTHONDIR"
+if [ "$*" = --check ]; then
+    where=(--output-dir "$folder/check")
+else
+    where=(--inplace)
+fi
+for notebook in notebooks/*.ipynb; do
+    echo "== $notebook"
+    "$folder/venv/bin/python" -m nbconvert --log-level WARN --to notebook --execute "$notebook" "${where[@]}" \
+        --ExecutePreprocessor.record_timing=False --ExecutePreprocessor.timeout=1800
+done
