@@ -29,9 +29,10 @@ impl Report {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let Results { folder, plan, store } = self.results.open()?;
         let runs = analysis::load(&plan, &store)?;
-        let tables = write_tables(&plan, &runs, &folder.join("tables"))?;
+        let mut tables = write_tables(&plan, &runs, &folder.join("tables"))?;
         report(&plan, &runs, &folder)?;
-        let charts = charts(&plan, &runs, MOST_PANELS);
+        let (charts, motion) = charts(&plan, &runs, MOST_PANELS)?;
+        tables.extend(motion);
         write_page(&plan, &store, &runs, &tables, &charts, &folder)
     }
 }

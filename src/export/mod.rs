@@ -20,6 +20,8 @@ use crate::problem::Motion;
 #[cfg(feature = "harness")]
 pub use motions::write_motions;
 #[cfg(feature = "harness")]
+pub use parquet::motion_table;
+#[cfg(feature = "harness")]
 pub use suite::{Algorithm, ExportedRun, Function, Objective, Suite, SuiteError};
 
 /// Intervals between the samples of an exported motion.

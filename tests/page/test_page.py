@@ -81,7 +81,7 @@ def check_table(page, section, checks, name, table):
             order = table.order(column, descending)
             if order is None:
                 sorted_texts = page.evaluate(
-                    "([texts, sign]) => texts.every((t, i) => !i || "
+                    "([texts, sign]) => texts.every((t, i) => !i || t === '' || texts[i - 1] !== '' && "
                     "sign * t.localeCompare(texts[i - 1], 'en', { numeric: true }) >= 0)",
                     [texts, -1 if descending else 1],
                 )
