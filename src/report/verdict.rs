@@ -26,15 +26,17 @@ pub fn verdict(plan: &Plan, runs: &[Run], tables: &[Table]) -> PolarsResult<Vec<
         && let Some(best) = best_run(runs.iter())
     {
         let (symbol, optimiser) = (plan.cost_symbol(), &plan.optimisers[best.optimiser].label);
-        let mut text =
-            format!("{optimiser} with seed {} found {symbol} = {:.6}", best.seed, best.cost);
-        if plan.instances[0].is_task() {
-            text += &format!(
+        let told = if plan.instances[0].is_task() {
+            format!(
                 ": the motion takes {:.4} s and leaves the base {:.2e}° from where it should point",
                 best.duration, best.residual_deg
-            );
-        }
-        verdict.push(Verdict { heading: "The best".to_owned(), text: text + "." });
+            )
+        } else {
+            String::new()
+        };
+        let text =
+            format!("{optimiser} with seed {} found {symbol} = {:.6}{told}.", best.seed, best.cost);
+        verdict.push(Verdict { heading: "The best".to_owned(), text });
     }
     if runs.len() < plan.runs.len() {
         let text = format!("Only {} of {} runs are stored so far.", runs.len(), plan.runs.len());
