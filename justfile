@@ -37,6 +37,10 @@ statistics:
 exchange:
     tests/exchange/run.sh
 
+# the page of a report, opened in a browser; needs Python 3.11 and Chromium
+page:
+    tests/page/run.sh
+
 # an array of tasks on a Slurm of its own, killed and requeued; skipped where Slurm is not installed
 cluster:
     tests/cluster/run.sh

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs small versions of all experiments, makes their pages and opens each from the disk in a browser without a
+# Runs small versions of all experiments and one on another robot, makes their pages and opens each from the disk in a browser without a
 # window: everything that a reader can click is clicked, and what it shows is compared with the tables' files.
 # Needs Python 3.11 or later, PyPI and Chromium, which it installs where it may.
 #   ./run.sh            builds the program
@@ -27,21 +27,23 @@ program=${PROGRAM:-$target/release/driftless}
 results=$folder/results
 rm -rf "$results" "$folder"/*.png
 # Seeds and evaluations a run.
-while read -r name seeds budget; do
-    "$program" run "experiments/$name.toml" --out "$results/$name" --seeds "$seeds" --budget "$budget" \
+while read -r experiment seeds budget; do
+    name=$(basename "$experiment")
+    "$program" run "$experiment.toml" --out "$results/$name" --seeds "$seeds" --budget "$budget" \
         > "$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
     "$program" report "$results/$name" > "$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
     cp "$results/$name/report.html" "$folder/before.html"
     "$program" report "$results/$name" > /dev/null 2>&1
     cmp "$results/$name/report.html" "$folder/before.html"
 done << 'EXPERIMENTS'
-default 5 2000
-paper 2 4000
-functions 5 2000
-weight-sweep 2 1000
-jerk-sweep 2 1000
-terms-sweep 2 1000
-poses 3 500
-convergence 3 500
+experiments/default 5 2000
+experiments/paper 2 4000
+experiments/functions 5 2000
+experiments/weight-sweep 2 1000
+experiments/jerk-sweep 2 1000
+experiments/terms-sweep 2 1000
+experiments/poses 3 500
+experiments/convergence 3 500
+tests/page/three-joints 3 1000
 EXPERIMENTS
 PYTHONDONTWRITEBYTECODE=1 "$python" "$here/test_page.py" "$results" "$folder" "$folder/axe-$axe/package/axe.min.js"

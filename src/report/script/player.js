@@ -90,19 +90,20 @@ class Player {
     this.parts.play.textContent = "Pause";
     let before = performance.now();
     const step = (now) => {
-      if (!this.playing) return;
       const share = this.share + (Math.max(0, now - before) / 1000 / this.scene.duration) * Number(this.parts.speed.value);
       before = now;
       const ends = share >= 1 && !this.parts.loop.checked;
       this.go(ends ? 1 : share % 1);
       if (ends) this.pause();
-      else requestAnimationFrame(step);
+      else this.frame = requestAnimationFrame(step);
     };
-    requestAnimationFrame(step);
+    this.frame = requestAnimationFrame(step);
   }
 
   pause() {
     this.playing = false;
+    // Else a frame that was asked for already would go on beside those of the next start.
+    cancelAnimationFrame(this.frame);
     this.parts.play.textContent = "Play";
   }
 

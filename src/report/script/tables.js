@@ -31,11 +31,11 @@ function shown(cell, kind) {
   return kind === "count" && cell === "" ? "–" : cell;
 }
 
-/** Compares cells of one column; numbers that are infinite or missing come last, whatever the direction. */
+/** Compares cells of one column; what is infinite, then what is missing comes last, whatever the direction. */
 function comparison(kind, direction) {
   if (kind === "text") {
     const collator = new Intl.Collator("en", { numeric: true });
-    return (a, b) => direction * collator.compare(a, b);
+    return (a, b) => (a === "") - (b === "") || direction * collator.compare(a, b);
   }
   const rank = (number) => (Number.isFinite(number) ? 0 : Number.isNaN(number) ? 2 : 1);
   return (a, b) => {
@@ -121,7 +121,8 @@ class DataTable {
     }
     const hidden = matches.length - visible.length;
     this.more.hidden = hidden === 0;
-    this.more.textContent = `Show ${Math.min(hidden, MORE_ROWS)} more of ${hidden} rows`;
+    const all = hidden <= MORE_ROWS;
+    this.more.textContent = all ? `Show the other ${hidden} rows` : `Show ${MORE_ROWS} more of ${hidden} rows`;
   }
 
   row(cells) {

@@ -40,7 +40,7 @@ class View {
     this.palette = null;
     const outline = panels(scene.satellite).flatMap((panel) => panel.outline);
     const corners = [...outline, ...boxEdges([0, 0, 0], scene.satellite.half).flat()];
-    const places = scene.frames.flatMap(({ position, attitude, origins }) =>
+    const places = [...scene.frames, scene.goal].flatMap(({ position, attitude, origins }) =>
       [...corners, ...origins].map((point) => add(position, turn(attitude, point))),
     );
     const extreme = (pick) => [0, 1, 2].map((k) => places.map((place) => place[k]).reduce((a, b) => pick(a, b)));
