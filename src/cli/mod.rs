@@ -70,7 +70,7 @@ enum Verb {
     /// Say which runs of an experiment are done, failed or missing
     #[cfg(feature = "harness")]
     Status(status::Status),
-    /// Make tables and figures from what is stored
+    /// Make tables, figures and a page from what is stored
     #[cfg(feature = "harness")]
     Report(report::Report),
     /// Merge many small files of results into few, while others run or read
