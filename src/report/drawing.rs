@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::PageError;
+use super::embedded::Embedded;
 use crate::plot::{Chart, PlotError};
 
 /// Drawings wider than a column and a half of a journal take the width of the page \[px\].
@@ -10,53 +12,52 @@ const WIDE: f64 = 500.0;
 /// A chart's SVG within a page.
 #[derive(Debug, Serialize)]
 pub(super) struct Drawing {
-    svg: String,
+    svg: Embedded,
     is_wide: bool,
     /// Whether it is higher than a screen.
     is_tall: bool,
 }
 
 impl Drawing {
-    pub(super) fn of(chart: &Chart) -> Result<Self, PlotError> {
-        Self::inline(&chart.figure.svg()?, &chart.name).ok_or_else(|| PlotError::Convert {
-            format: "drawing of a page",
-            reason: "its size is not where it should be".to_owned(),
-        })
+    pub(super) fn of(chart: &Chart) -> Result<Self, PageError> {
+        let (svg, [width, height]) =
+            inline(&chart.figure.svg()?, &chart.name).ok_or_else(|| PlotError::Convert {
+                format: "drawing of a page",
+                reason: "its size is not where it should be".to_owned(),
+            })?;
+        Ok(Self { svg: Embedded::new(&svg)?, is_wide: width > WIDE, is_tall: height > 2.0 * width })
     }
+}
 
-    /// Gives the drawing a view box, so that it fits any width, and an accessible name from the figure's
-    /// title and caption, and makes its identifiers its own.
-    fn inline(svg: &str, name: &str) -> Option<Self> {
-        let rest = svg.split_once("<svg width=\"")?.1;
-        let (width, rest) = rest.split_once("\" height=\"")?;
-        let (height, rest) = rest.split_once('"')?;
-        let rest = rest
-            .replace(" id=\"", &format!(" id=\"{name}-"))
-            .replace("url(#", &format!("url(#{name}-"))
-            .replace("href=\"#", &format!("href=\"#{name}-"));
-        let svg = format!(
-            "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-labelledby=\"title-{name}\" \
-             aria-describedby=\"caption-{name}\"{rest}"
-        );
-        let [width, height]: [f64; 2] = [width.parse().ok()?, height.parse().ok()?];
-        Some(Self { svg, is_wide: width > WIDE, is_tall: height > 2.0 * width })
-    }
+/// Gives a drawing a view box, so that it fits any width, and an accessible name from the figure's title and caption,
+/// and makes its identifiers its own; with its size \[px\].
+fn inline(svg: &str, name: &str) -> Option<(String, [f64; 2])> {
+    let rest = svg.split_once("<svg width=\"")?.1;
+    let (width, rest) = rest.split_once("\" height=\"")?;
+    let (height, rest) = rest.split_once('"')?;
+    let rest = rest
+        .replace(" id=\"", &format!(" id=\"{name}-"))
+        .replace("url(#", &format!("url(#{name}-"))
+        .replace("href=\"#", &format!("href=\"#{name}-"));
+    let svg = format!(
+        "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-labelledby=\"title-{name}\" \
+         aria-describedby=\"caption-{name}\"{rest}"
+    );
+    Some((svg, [width.parse().ok()?, height.parse().ok()?]))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Drawing;
+    use super::inline;
 
     #[test]
     fn two_drawings_share_no_identifier() {
         let svg = "<svg width=\"332.6\" height=\"700\" xmlns=\"http://www.w3.org/2000/svg\"><defs>\
                    <clipPath id=\"c1\"/></defs><g clip-path=\"url(#c1)\"/><use href=\"#c1\"/></svg>\n";
-        let drawing = Drawing::inline(svg, "ranks").unwrap();
-        assert!(drawing.svg.starts_with("<svg viewBox=\"0 0 332.6 700\" role=\"img\""));
-        assert!(drawing.svg.contains("id=\"ranks-c1\""));
-        assert!(
-            drawing.svg.contains("url(#ranks-c1)") && drawing.svg.contains("href=\"#ranks-c1\"")
-        );
-        assert!(drawing.is_tall && !drawing.is_wide);
+        let (drawing, size) = inline(svg, "ranks").unwrap();
+        assert!(drawing.starts_with("<svg viewBox=\"0 0 332.6 700\" role=\"img\""));
+        assert!(drawing.contains("id=\"ranks-c1\""));
+        assert!(drawing.contains("url(#ranks-c1)") && drawing.contains("href=\"#ranks-c1\""));
+        assert_eq!(size, [332.6, 700.0]);
     }
 }

@@ -1,6 +1,7 @@
 """A page in a browser without a window, and what it is asked."""
 
 import shutil
+import time
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -62,6 +63,8 @@ def picture(page: Page) -> str:
 
 
 def downloaded(page: Page, button) -> bytes:
+    # Chromium drops what comes faster than some ten in a second.
+    time.sleep(0.12)
     with page.expect_download() as download:
         button.click()
     return Path(download.value.path()).read_bytes()

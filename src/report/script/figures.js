@@ -29,10 +29,12 @@ async function picture(drawing) {
   return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
 }
 
-/** Every button that offers a drawing. */
-function offerFigures() {
+/** Shows every drawing, and offers it as a file. */
+async function fillFigures() {
   for (const figure of document.querySelectorAll("figure[data-name]")) {
     const { name } = figure.dataset;
+    const script = figure.querySelector("script");
+    script.outerHTML = await embedded(script);
     const drawing = figure.querySelector("svg");
     figure.querySelector(".svg").addEventListener("click", () => {
       download(`${name}.svg`, standalone(drawing).text, "image/svg+xml");

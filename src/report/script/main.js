@@ -33,7 +33,7 @@ async function openPlayer() {
 }
 
 offerDownloads();
-offerFigures();
+await fillFigures();
 const player = await openPlayer();
 offerTheme(() => player?.view.draw());
 await fillTables();
