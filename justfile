@@ -41,6 +41,14 @@ exchange:
 page:
     tests/page/run.sh
 
+# figures as PDF, SVG and PNG read by other tools; needs Python 3.11
+figures:
+    tests/figures/run.sh
+
+# the notebooks, executed on copies; needs Python 3.11
+notebooks:
+    notebooks/run.sh --check
+
 # an array of tasks on a Slurm of its own, killed and requeued; skipped where Slurm is not installed
 cluster:
     tests/cluster/run.sh
@@ -49,6 +57,6 @@ cluster:
 run:
     cargo run --release -- run
 
-# accept what the snapshot tests now print; look at the difference before committing it
+# accept what the tests of texts and charts now print and draw; look at the difference before committing it
 accept:
-    INSTA_UPDATE=always cargo test --release --test cli
+    INSTA_UPDATE=always DRIFTLESS_ACCEPT_CHARTS=1 cargo test --release --lib --test cli
