@@ -4,7 +4,7 @@ use plotters::style::RGBColor;
 
 use super::figure::PlotError;
 use super::sheet::{Anchor, Place, Sheet};
-use super::style::{GRID, INK, PAPER, Stroke, mix};
+use super::style::{GRID, INK_ON_COLOUR, PAPER, Stroke, mix};
 
 /// One mark; abscissae and ordinates are values of the panel's axes.
 #[derive(Debug, Clone)]
@@ -162,7 +162,7 @@ impl Mark {
                 sheet.area(&corners, *colour, 1.0)?;
                 let outline = [corners[0], corners[1], corners[2], corners[3], corners[0]];
                 sheet.line(&outline, &Stroke::plain(PAPER, 0.15))?;
-                let ink = if luminance(*colour) > 0.35 { INK } else { PAPER };
+                let ink = if luminance(*colour) > 0.35 { INK_ON_COLOUR } else { PAPER };
                 sheet.sized_text(text, place([*x, *y]), Anchor::Centre, *points, ink)
             }
             Self::Area { colour, corners } => {

@@ -27,6 +27,8 @@ pub(super) const TEXT_PT: f64 = 7.5;
 
 /// Ink for axes and text.
 pub(super) const INK: RGBColor = RGBColor(38, 38, 38);
+/// Ink on a coloured ground; a page in dark colours turns the other ink light.
+pub(super) const INK_ON_COLOUR: RGBColor = RGBColor(30, 30, 30);
 /// Grid lines.
 pub(super) const GRID: RGBColor = RGBColor(222, 222, 222);
 /// Curves in the background.
