@@ -7,7 +7,7 @@ use super::ties::settled;
 use crate::experiment::Plan;
 
 /// Level of the tests.
-pub(super) const ALPHA: f64 = 0.05;
+pub const ALPHA: f64 = 0.05;
 
 /// What the tests stand on: final costs of all optimisers, block by block.
 #[derive(Debug)]

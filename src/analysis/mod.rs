@@ -23,6 +23,7 @@ pub use verdict::Finding;
 
 use crate::experiment::Plan;
 use crate::problem::Reorientation;
+pub use blocks::ALPHA;
 use blocks::Blocks;
 use runs::groups;
 

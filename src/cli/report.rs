@@ -96,7 +96,7 @@ pub(super) fn report(
         say!("\n{question}\n{}", textwrap::fill(answer, LINE));
     }
     let mut tables = analysis.tables()?;
-    let mut charts = plot::charts(plan, &tables)?;
+    let mut charts = plot::charts(plan, &tables, runs.len())?;
     // Costs of different instances do not compare, so there is no best of all to draw.
     if let (1, [(run, problem)]) = (plan.instances.len(), &best[..]) {
         let motion = Motion::sample(problem, &run.coefficients, run.duration, plot::SAMPLES);
@@ -109,6 +109,7 @@ pub(super) fn report(
         name: &plan.name,
         findings: &findings,
         scenes: &scenes(plan, &best),
+        motions_found: best.len(),
         charts: &charts,
         tables: &tables,
         files: &files(folder),

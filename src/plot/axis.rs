@@ -1,6 +1,6 @@
 //! An axis: its range, its scale, and ticks that have room.
 
-use super::sheet::{raised, text_width};
+use super::sheet::{fitted, raised, text_width};
 use super::style::TEXT_PT;
 
 /// An axis; a logarithmic one holds decimal logarithms.
@@ -22,6 +22,8 @@ enum Scale {
 
 /// Most powers of ten that are labelled on a logarithmic axis.
 const MOST_DECADES: f64 = 8.0;
+/// Longest name \[mm\]; a longer one ends with an ellipsis.
+const LONGEST_NAME: f64 = 55.0;
 /// Most intervals of a linear axis.
 const MOST_INTERVALS: f64 = 9.0;
 
@@ -44,7 +46,8 @@ impl Axis {
     }
 
     /// Names, the first at the left or at the bottom.
-    pub(super) fn names(label: &str, names: Vec<String>) -> Self {
+    pub(super) fn names(label: &str, names: &[String]) -> Self {
+        let names: Vec<String> = names.iter().map(|name| fitted(name, LONGEST_NAME)).collect();
         let range = [-0.5, names.len() as f64 - 0.5];
         Self { label: label.to_owned(), range, scale: Scale::Names(names) }
     }
@@ -53,6 +56,12 @@ impl Axis {
     pub(super) fn reversed(mut self) -> Self {
         self.range.reverse();
         self
+    }
+
+    /// The value at the last end.
+    pub(super) fn end(&self) -> f64 {
+        let last = self.range[1];
+        if let Scale::Logarithmic = self.scale { 10_f64.powf(last) } else { last }
     }
 
     /// A value's place: 0 at the first end, 1 at the last; values beyond stand at the ends.

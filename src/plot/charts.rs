@@ -6,7 +6,8 @@ use super::chart::Chart;
 use super::figure::{Figure, PlotError};
 use super::looks::Looks;
 use super::sweeps::Swept;
-use super::{comparison, convergence, critical_difference, running_times, sweeps};
+use super::{comparison, convergence, critical_difference, pareto, running_times, sweeps};
+use crate::analysis::ALPHA;
 use crate::analysis::tables::Table;
 use crate::experiment::Plan;
 use crate::problem::BestKnown;
@@ -34,14 +35,17 @@ struct Maker<'a> {
     plan: &'a Plan,
     tables: &'a [Table],
     looks: Looks,
+    /// What every caption of a comparison ends with.
+    notes: String,
     charts: Vec<Chart>,
 }
 
-/// Every chart that an experiment's tables give. Those of more than 24 groups of instances, or of more than eight
+/// Every chart that the tables of an experiment with so many stored runs give. Those of more than 24 groups of instances, or of more than eight
 /// curves of a sweep, are left out.
-pub fn charts(plan: &Plan, tables: &[Table]) -> Result<Vec<Chart>, PlotError> {
+pub fn charts(plan: &Plan, tables: &[Table], stored: usize) -> Result<Vec<Chart>, PlotError> {
     let looks = Looks::of(&plan.optimisers);
-    let mut maker = Maker { plan, tables, looks, charts: Vec::new() };
+    let notes = notes(plan, stored);
+    let mut maker = Maker { plan, tables, looks, notes, charts: Vec::new() };
     maker.costs()?;
     maker.times()?;
     maker.ranks()?;
@@ -62,10 +66,12 @@ impl Maker<'_> {
         table: &'static str,
         figure: Option<Figure>,
     ) {
-        self.charts.extend(figure.map(|figure| Chart {
+        // Where no optimiser has tried what another has, a table may be empty.
+        let drawn = figure.filter(|figure| !figure.panels.is_empty());
+        self.charts.extend(drawn.map(|figure| Chart {
             name: name.to_owned(),
             title: title.to_owned(),
-            caption: caption.to_owned(),
+            caption: format!("{caption}{}", self.notes),
             table,
             figure,
         }));
@@ -87,7 +93,7 @@ impl Maker<'_> {
             let figure = comparison::final_costs(frame, &self.looks, symbol)?;
             let caption = format!(
                 "Final {symbol} of all runs, certified: quartiles as a box, the least and the largest as whiskers, single \
-                 runs as points where there are thirty at most."
+                 runs as points where there are thirty at most. Runs that failed are counted at the end."
             );
             self.add("final-costs", "Final costs", &caption, "runs", figure);
         }
@@ -131,16 +137,26 @@ impl Maker<'_> {
     fn ranks(&mut self) -> Result<(), PlotError> {
         let tables = [self.frame("ranks"), self.frame("friedman"), self.frame("pairs")];
         let [Some(ranks), Some(friedman), Some(pairs)] = tables else { return Ok(()) };
+        if self.plan.is_uneven() {
+            return Ok(());
+        }
         let diagram = critical_difference::critical_difference(ranks, friedman, &self.looks)?;
         let effects = comparison::effect_sizes(pairs, ranks)?;
-        let caption = "Mean ranks of the final costs, 1 being the best. A bar joins optimisers of which no two differ \
-            significantly by Wilcoxon's test with Holm's correction at level 0.05.";
-        let title = "Critical differences";
-        self.add("critical-difference", title, caption, "ranks", Some(diagram));
-        let caption = "Vargha and Delaney's A12: the probability that a run of the row's optimiser ends lower than a run of the \
-            column's on the same instance, ties half. Blue favours the row, orange the column; a star marks pairs that differ \
-            significantly, others are pale.";
-        self.add("effect-sizes", "Every two optimisers", caption, "pairs", Some(effects));
+        let told = |name: &str| {
+            let table = self.tables.iter().find(|table| table.name == name);
+            table.map_or_else(String::new, |table| format!(" {}", table.caption))
+        };
+        let (of_ranks, of_pairs) = (told("ranks"), told("pairs"));
+        let caption = format!(
+            "Bars join the optimisers of a clique; the bracket is Nemenyi's critical difference at level {ALPHA}, a test of its \
+             own on ranks alone, from which bars need not follow.{of_ranks}"
+        );
+        self.add("critical-difference", "Critical differences", &caption, "ranks", Some(diagram));
+        let caption = format!(
+            "A12 of the row's optimiser against the column's. Blue favours the row, orange the column; a star marks pairs that \
+             differ significantly at level {ALPHA}, others are pale.{of_pairs}"
+        );
+        self.add("effect-sizes", "Every two optimisers", &caption, "pairs", Some(effects));
         Ok(())
     }
 
@@ -155,10 +171,10 @@ impl Maker<'_> {
             self.add(name, title, caption, "best", figure);
         }
         if let Some(frame) = self.frame("pareto") {
-            let figure = sweeps::pareto(frame)?;
+            let figure = pareto::pareto(frame)?;
             let caption = "Residual against duration of the best motions of all weights; efficient are those that no other \
                 weight's beats in one without being worse in the other.";
-            self.add("pareto", "Residual against duration", caption, "pareto", Some(figure));
+            self.add("pareto", "Residual against duration", caption, "pareto", figure);
         }
         Ok(())
     }
@@ -169,6 +185,20 @@ impl Maker<'_> {
         let problems = self.plan.instances.iter().filter_map(|instance| instance.reorientation());
         problems.filter_map(BestKnown::of).find_map(|known| known.free_form_j)
     }
+}
+
+/// What has to be known of the runs to read a chart.
+fn notes(plan: &Plan, stored: usize) -> String {
+    let planned = plan.runs.len();
+    let uses = plan.optimisers.iter().filter(|o| o.settings.optimiser().needs_derivatives());
+    let uses: Vec<&str> = uses.map(|entrant| entrant.label.as_str()).collect();
+    let notes = [
+        (stored < planned).then(|| format!(" Only {stored} of {planned} runs are stored so far.")),
+        plan.is_uneven().then(|| " Budgets differ within the field.".to_owned()),
+        (!uses.is_empty() && uses.len() < plan.optimisers.len())
+            .then(|| format!(" Evaluations of {} come with derivatives.", uses.join(", "))),
+    ];
+    notes.into_iter().flatten().collect()
 }
 
 /// Name, title and caption of a sweep's chart.
@@ -192,8 +222,8 @@ fn told(swept: Swept) -> (&'static str, &'static str, &'static str) {
         Swept::JerkLimit => (
             "jerk-sweep",
             "Limit on jerks",
-            "Duration of the best motion against the limit on jerks. The dotted line is the law that holds while jerk alone \
-             limits the motion.",
+            "Duration of the best motion against the limit on jerks. The dotted line, where there is one, is the \
+             law that holds while jerk alone limits the motion.",
         ),
         Swept::Terms => (
             "terms-sweep",

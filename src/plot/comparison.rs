@@ -8,7 +8,9 @@ use super::figure::{Figure, PlotError};
 use super::looks::Looks;
 use super::marks::Mark;
 use super::panel::{MARGIN, Panel};
+use super::sheet::{Anchor, fitted};
 use super::style::{COLOURS, GRID, PAPER, Stroke, Width, mix};
+use crate::analysis::ALPHA;
 use crate::analysis::statistics::quantile;
 
 /// Final costs below are drawn at the axis's lower end.
@@ -21,9 +23,13 @@ const WIDE: f64 = 8.0;
 const NARROW: f64 = 2e-3;
 /// Height of an optimiser's line \[mm\].
 const ROW: f64 = 4.6;
+/// Room for the number of failed runs, as a share of the axis.
+const FOR_FAILURES: f64 = 0.45;
+/// Longest name in a heat map \[mm\].
+const LONGEST_NAME: f64 = 48.0;
 
 /// The final costs of all runs, from the table `runs`: quartiles as a box, least and largest as whiskers,
-/// and single runs where they are few.
+/// and single runs where they are few; failed ones are counted at the end.
 pub fn final_costs(
     frame: &DataFrame,
     looks: &Looks,
@@ -46,31 +52,45 @@ pub fn final_costs(
             costs.sort_by(f64::total_cmp);
             costs
         };
-        let marks = labels.iter().enumerate();
-        let marks =
-            marks.flat_map(|(row, label)| boxed(row as f64, &of(label), looks.stroke(label)));
-        let all = (0..costs.len()).filter(|&i| groups[i] == *group).map(|i| costs[i]);
-        let [low, high] = range(all, LOWEST);
-        let label = format!("final {symbol}");
-        // Costs that are all but the same stay so.
-        let (low, high) = (low - NARROW * low.abs(), high + NARROW * high.abs());
-        let x = if high / low > WIDE {
-            Axis::logarithmic(&label, [low, high], MARGIN)
-        } else {
-            Axis::linear(&label, [low, high], MARGIN)
-        };
-        let names = labels.iter().map(|&label| label.to_owned()).collect();
-        Panel::new(x, Axis::names("", names).reversed(), marks.collect()).titled(group)
+        let rows: Vec<Vec<f64>> = labels.iter().map(|label| of(label)).collect();
+        let x = cost_axis(&format!("final {symbol}"), &rows);
+        let marks = rows.iter().zip(&labels).enumerate();
+        let marks = marks.flat_map(|(row, (costs, label))| {
+            let failed = costs.iter().filter(|cost| cost.is_infinite()).count();
+            let (ended, stroke) = (&costs[..costs.len() - failed], looks.stroke(label));
+            boxed(row as f64, ended, stroke).into_iter().chain(failures(row as f64, failed, &x))
+        });
+        let names: Vec<String> = labels.iter().map(|&label| label.to_owned()).collect();
+        let marks = marks.collect();
+        Panel::new(x, Axis::names("", &names).reversed(), marks).titled(group)
     };
     let mut figure = Figure::grid(panels.into_iter().map(panel).collect());
     figure.height = ROW * labels.len() as f64;
-    if labels.len() > 12 && figure.panels.len() > 1 {
-        figure.across = figure.across.min(3);
-    }
     Ok(Some(figure))
 }
 
-/// A box, with single runs where they are few; costs in order.
+/// An axis over the final costs of some optimisers, with room behind them where runs failed.
+fn cost_axis(label: &str, rows: &[Vec<f64>]) -> Axis {
+    let all = rows.iter().flatten().copied();
+    let [low, high] = range(all.clone(), LOWEST);
+    // Costs that are all but the same stay so.
+    let (low, high) = (low - NARROW * low.abs(), high + NARROW * high.abs());
+    let behind = if all.into_iter().any(f64::is_infinite) { FOR_FAILURES } else { 0.0 };
+    if high / low > WIDE {
+        Axis::logarithmic(label, [low, high * (high / low).powf(behind)], MARGIN)
+    } else {
+        Axis::linear(label, [low, high + behind * (high - low)], MARGIN)
+    }
+}
+
+/// How many runs failed, at the end of the axis.
+fn failures(row: f64, failed: usize, x: &Axis) -> Option<Mark> {
+    let text = format!("{failed} failed");
+    let at = [x.end(), row];
+    (failed > 0).then_some(Mark::Label { at, text, anchor: Anchor::Right, raised: 0.0 })
+}
+
+/// A box, with single runs where they are few; finite costs in order.
 fn boxed(row: f64, costs: &[f64], stroke: Stroke) -> Vec<Mark> {
     if costs.is_empty() {
         return Vec::new();
@@ -101,7 +121,7 @@ pub fn effect_sizes(pairs: &DataFrame, ranks: &DataFrame) -> Result<Figure, Plot
     for (i, (first, second)) in first.iter().zip(&second).enumerate() {
         let (row, column) = (place(first), place(second));
         for (row, column, effect) in [(row, column, effects[i]), (column, row, 1.0 - effects[i])] {
-            let is_significant = p[i] <= 0.05;
+            let is_significant = p[i] <= ALPHA;
             let star = if is_significant { "*" } else { "" };
             let text = format!("{effect:.2}{star}");
             // Where there is little room, 0.93 is .93.
@@ -110,10 +130,12 @@ pub fn effect_sizes(pairs: &DataFrame, ranks: &DataFrame) -> Result<Figure, Plot
             marks.push(cell(row, column, shade(effect, is_significant), text, points));
         }
     }
-    let numbers = (1..=count).map(|n| n.to_string()).collect();
-    let names = order.iter().enumerate().map(|(i, name)| format!("{name}  {}", i + 1)).collect();
-    let x = Axis::names("the row's runs end lower than the column's", numbers);
-    let panel = Panel::new(x, Axis::names("", names).reversed(), marks);
+    let numbers: Vec<String> = (1..=count).map(|n| n.to_string()).collect();
+    let names = order.iter().enumerate();
+    let names: Vec<String> =
+        names.map(|(i, name)| format!("{}  {}", fitted(name, LONGEST_NAME), i + 1)).collect();
+    let x = Axis::names("the row's runs end lower than the column's", &numbers);
+    let panel = Panel::new(x, Axis::names("", &names).reversed(), marks);
     let width = if count > 8 { Width::Page } else { Width::Column };
     Ok(Figure { width, across: 1, height: ROW * count as f64, panels: vec![panel] })
 }

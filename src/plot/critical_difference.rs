@@ -8,7 +8,7 @@ use super::figure::{Figure, PlotError};
 use super::looks::Looks;
 use super::marks::{Line, Mark};
 use super::panel::Panel;
-use super::sheet::{Anchor, text_width};
+use super::sheet::{Anchor, fitted, text_width};
 use super::style::{INK, Stroke, TEXT_PT, Width};
 
 /// Distance between lines of labels, and between bars \[mm\].
@@ -16,6 +16,8 @@ const ROW: f64 = 4.2;
 const BAR: f64 = 1.6;
 /// Height of the axis of ranks below the upper end \[mm\].
 const AXIS: f64 = 8.5;
+/// Longest label \[mm\]; a longer one ends with an ellipsis.
+const LONGEST_NAME: f64 = 50.0;
 /// Room between the axis and where a label's line ends, and the shortest axis in a column \[mm\].
 const GAP: f64 = 1.2;
 const SHORTEST: f64 = 26.0;
@@ -68,8 +70,9 @@ pub fn critical_difference(
     let difference = reals(friedman, "critical difference")?.first().copied().unwrap_or(f64::NAN);
     let count = labels.len();
     let half = count.div_ceil(2);
-    let told: Vec<String> =
-        labels.iter().zip(&means).map(|(label, mean)| format!("{label} ({mean:.2})")).collect();
+    let told = labels.iter().zip(&means);
+    let told = told.map(|(label, mean)| format!("{} ({mean:.2})", fitted(label, LONGEST_NAME)));
+    let told: Vec<String> = told.collect();
     let widest = |texts: &[String]| {
         texts.iter().map(|t| text_width(t, TEXT_PT)).fold(0.0, f64::max) + 2.0 * GAP + 1.0
     };

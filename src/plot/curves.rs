@@ -3,6 +3,7 @@
 use polars::prelude::*;
 
 use super::looks::Looks;
+use super::sheet::printable;
 
 /// One curve.
 #[derive(Debug, Clone, Default)]
@@ -26,10 +27,10 @@ pub(super) struct Facet<'a> {
 /// Most panels of a figure.
 pub(super) const MOST_PANELS: usize = 24;
 
-/// A column of texts.
+/// A column of texts, as they can be drawn.
 pub(super) fn texts(frame: &DataFrame, name: &str) -> PolarsResult<Vec<String>> {
     let column = frame.column(name)?.str()?;
-    Ok(column.iter().map(|text| text.unwrap_or_default().to_owned()).collect())
+    Ok(column.iter().map(|text| printable(text.unwrap_or_default())).collect())
 }
 
 /// A column of numbers; missing ones are no numbers.

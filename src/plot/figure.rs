@@ -193,6 +193,8 @@ pub(super) fn png(tree: &usvg::Tree, dpi: f32) -> Result<Vec<u8>, PlotError> {
     let (width, height) = (length(tree.size().width()), length(tree.size().height()));
     let mut pixels = tiny_skia::Pixmap::new(width, height)
         .ok_or_else(|| error("the figure is too large".to_owned()))?;
+    // The last pixels are only in part within the drawing.
+    pixels.fill(tiny_skia::Color::WHITE);
     resvg::render(tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);

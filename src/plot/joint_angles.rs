@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::figure::Figure;
 use super::marks::{Line, Mark};
 use super::panel::{MARGIN, Panel, extent};
+use super::sheet::printable;
 use super::style::Stroke;
 use crate::problem::Motion;
 
@@ -18,7 +19,7 @@ pub(super) fn joint_panel(motion: &Motion, order: usize, label: &str, limits: &[
     let end = motion.time.last().copied().unwrap_or(1.0);
     for (i, joint) in motion.joints.iter().enumerate() {
         let values = joint.derivatives.iter().map(|d| d[order].to_degrees());
-        lines.push(Line::over_time(&joint.name, Stroke::of(i), &motion.time, values));
+        lines.push(Line::over_time(&printable(&joint.name), Stroke::of(i), &motion.time, values));
     }
     for limit in limits.iter().flat_map(|limit| [-limit, *limit]) {
         let name = if limits.first() == Some(&-limit) { "limit" } else { "" };

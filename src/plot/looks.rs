@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::sheet::printable;
 use super::style::{COLOURS, DASHES, INK, Marker, PAPER, Stroke, mix};
 use crate::experiment::Entrant;
 use crate::optimiser::Settings;
@@ -44,7 +45,8 @@ fn stroke(settings: &Settings, twins: usize) -> Stroke {
         _ => mix(colour, INK, 0.5),
     };
     let plain = Stroke { dashes, hollow: twins % 2 == 1, ..Stroke::plain(colour, 0.32) };
-    plain.with_marker(Marker::ALL[place_of(marked)])
+    // Six of a kind have its own marker, the next six another.
+    plain.with_marker(Marker::ALL[(place_of(marked) + twins / 6) % Marker::ALL.len()])
 }
 
 impl Looks {
@@ -61,7 +63,7 @@ impl Looks {
             let twins = seen.entry(same).or_insert(0);
             let stroke = stroke(settings, *twins);
             *twins += 1;
-            (entrant.label.clone(), settings.name(), stroke)
+            (printable(&entrant.label), settings.name(), stroke)
         };
         Self { field: field.iter().map(look).collect() }
     }

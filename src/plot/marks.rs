@@ -162,7 +162,7 @@ impl Mark {
                 sheet.area(&corners, *colour, 1.0)?;
                 let outline = [corners[0], corners[1], corners[2], corners[3], corners[0]];
                 sheet.line(&outline, &Stroke::plain(PAPER, 0.15))?;
-                let ink = if luminance(*colour) > 0.35 { INK_ON_COLOUR } else { PAPER };
+                let ink = if luminance(*colour) > 0.2 { INK_ON_COLOUR } else { PAPER };
                 sheet.sized_text(text, place([*x, *y]), Anchor::Centre, *points, ink)
             }
             Self::Area { colour, corners } => {

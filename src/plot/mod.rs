@@ -14,6 +14,7 @@ mod joint_angles;
 mod looks;
 mod marks;
 mod panel;
+mod pareto;
 mod running_times;
 mod sheet;
 mod snapshots;
@@ -34,9 +35,10 @@ pub use derivatives::derivatives;
 pub use figure::{Figure, PlotError};
 pub use joint_angles::joint_angles;
 pub use looks::Looks;
+pub use pareto::pareto;
 pub use running_times::{expected_running_time, profiles, running_time_distribution};
 pub use snapshots::snapshots;
-pub use sweeps::{Swept, pareto, sweep};
+pub use sweeps::{Swept, sweep};
 
 use crate::problem::Motion;
 use crate::task::Task;
@@ -80,7 +82,7 @@ pub fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
             "snapshots",
             "The arm along the motion",
             "The robot at equal distances of time, seen along one direction of inertial space; the dotted outline is the base in \
-             its goal attitude, the orange line the way of the tool. The base's box has the base's mass and inertia.",
+             its goal attitude, the orange line the way of the tool. Body and panels are drawn for the eye: the model knows mass, inertia and mount.",
             snapshots(motion, task),
         ),
     ]

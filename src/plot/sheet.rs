@@ -41,7 +41,7 @@ pub(super) enum Anchor {
     Right,
 }
 
-/// What begins and ends a lowered and a raised part of a text: characters that no font and no label has.
+/// What begins and ends a lowered and a raised part of a text: characters that [`printable`] takes away.
 const LOWERED: char = '\u{E000}';
 const RAISED: char = '\u{E001}';
 const LEVEL: char = '\u{E002}';
@@ -49,6 +49,14 @@ const LEVEL: char = '\u{E002}';
 /// The duration's symbol and that of the weight of the base.
 pub(super) const T_F: &str = "t\u{E000}f\u{E002}";
 pub(super) const K_B: &str = "K\u{E000}b\u{E002}";
+
+/// A text of somebody else's, without characters that no drawing can have and those that lower and raise.
+pub(super) fn printable(text: &str) -> String {
+    let is_printable = |c: char| {
+        !c.is_control() && !matches!(c, LOWERED | RAISED | LEVEL | '\u{FFFE}' | '\u{FFFF}')
+    };
+    text.chars().map(|c| if is_printable(c) { c } else { '\u{FFFD}' }).collect()
+}
 
 /// A raised text.
 pub(super) fn raised(text: &str) -> String {

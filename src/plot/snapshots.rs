@@ -68,21 +68,6 @@ fn face(half: [f64; 3], axis: usize, side: f64) -> [Vector3<f64>; 4] {
     })
 }
 
-/// A panel on either side of the box, as corners.
-fn panels(satellite: &Satellite) -> [[Vector3<f64>; 4]; 2] {
-    let Satellite { half, panel_axis: along, .. } = *satellite;
-    let across = (0..3).find(|&k| k != along && k != 2).unwrap_or(0);
-    [-1.0, 1.0].map(|side| {
-        let corner = |far: f64, aside: f64| {
-            let mut corner = Vector3::zeros();
-            corner[along] = side * half[along] * far;
-            corner[across] = half[across] * aside;
-            corner
-        };
-        [corner(1.15, -0.8), corner(3.0, -0.8), corner(3.0, 0.8), corner(1.15, 0.8)]
-    })
-}
-
 /// The robot at equal distances of time, seen along one direction. The base's goal attitude is dotted, the tool's way is
 /// drawn up to each time.
 pub fn snapshots(motion: &Motion, task: &Task) -> Figure {
@@ -134,7 +119,8 @@ fn drawing(view: &View, satellite: &Satellite, task: &Task, way: &[Snapshot]) ->
         let marks = if is_near(&(0.5 * (link[0] + link[1]))) { &mut before } else { &mut behind };
         marks.push(Mark::Line(Line::new("", stroke, ends.to_vec())));
     }
-    for panel in panels(satellite) {
+    for panel in &satellite.panels {
+        let panel = panel.corners().map(Vector3::from);
         let middle = now.base + now.attitude * (0.25 * panel.iter().sum::<Vector3<f64>>());
         let corners = panel.iter().map(place).collect();
         let marks = if is_near(&middle) { &mut before } else { &mut behind };
@@ -147,7 +133,10 @@ fn drawing(view: &View, satellite: &Satellite, task: &Task, way: &[Snapshot]) ->
             normal[axis] = side;
             if view.towards.dot(&(now.attitude * normal)) > 0.0 {
                 let corners = face(satellite.half, axis, side).iter().map(place).collect();
-                marks.push(Mark::Area { colour: mix(GRID, INK, 0.14 * axis as f64), corners });
+                marks.push(Mark::Area {
+                    colour: mix(GRID, INK, 0.02 + 0.14 * axis as f64),
+                    corners,
+                });
             }
         }
     }

@@ -7,7 +7,7 @@ use super::curves::{range, reals, texts};
 use super::figure::{Figure, PlotError};
 use super::marks::{Line, Mark};
 use super::panel::{MARGIN, Panel, extent};
-use super::sheet::{Anchor, K_B, T_F};
+use super::sheet::{K_B, T_F};
 use super::style::{Marker, Stroke};
 
 /// A setting that can be swept.
@@ -26,7 +26,7 @@ pub enum Swept {
 }
 
 /// Most curves of a chart.
-const MOST_CURVES: usize = 8;
+pub(super) const MOST_CURVES: usize = 8;
 
 impl Swept {
     /// All of them.
@@ -73,8 +73,7 @@ impl Sweep {
             [reals(best, "best J")?, reals(best, "residual [°]")?, reals(best, "t_f [s]")?];
         let mut sweep = Self { names: Vec::new(), curves: Vec::new() };
         for (i, label) in texts(best, "instance")?.iter().enumerate() {
-            let is_other = |part: &&str| part.split('=').next() != Some(swept.column());
-            let name = label.split(' ').filter(is_other).collect::<Vec<_>>().join(" ");
+            let name = without(label, swept.column());
             let curve = sweep.names.iter().position(|known| *known == name);
             let curve = curve.unwrap_or_else(|| {
                 sweep.names.push(name);
@@ -102,7 +101,7 @@ impl Sweep {
     }
 
     fn settings(&self) -> [f64; 2] {
-        range(self.curves.iter().flatten().map(|values| values[0]), f64::MIN_POSITIVE)
+        range(self.curves.iter().flatten().map(|values| values[0]), 0.0)
     }
 }
 
@@ -117,8 +116,11 @@ pub fn sweep(
     bound: Option<f64>,
 ) -> Result<Option<Figure>, PlotError> {
     let Some(sweep) = Sweep::of(best, swept)? else { return Ok(None) };
+    let is_positive = sweep.curves.iter().flatten().all(|values| values[0] > 0.0);
     let x = match swept {
-        Swept::Terms => Axis::linear(&swept.label(), sweep.settings(), MARGIN),
+        _ if swept == Swept::Terms || !is_positive => {
+            Axis::linear(&swept.label(), sweep.settings(), MARGIN)
+        }
         _ => Axis::logarithmic(&swept.label(), sweep.settings(), MARGIN),
     };
     let panel = |mut lines: Vec<Line>, reference: Option<Line>, label: &str, is_log: bool| {
@@ -162,80 +164,12 @@ fn cube_root_law(sweep: &Sweep) -> Option<Line> {
     Some(Line::new(&law, Stroke::reference(), vec![at(first[0]), at(last[0])]))
 }
 
-fn duration() -> String {
+/// An instance's label without one of the settings that it names.
+pub(super) fn without(label: &str, setting: &str) -> String {
+    let is_other = |part: &&str| part.split('=').next() != Some(setting);
+    label.split(' ').filter(is_other).collect::<Vec<_>>().join(" ")
+}
+
+pub(super) fn duration() -> String {
     format!("duration {T_F} [s]")
-}
-
-/// How far the text beside a point stands above it \[mm\].
-const ABOVE_FRONT: f64 = 1.9;
-/// Shares of the axes within which points are one.
-const TOGETHER: f64 = 0.02;
-
-/// Residual against duration of the best motions of all weights, from the table `pareto`; filled points are efficient, and
-/// weights stand beside points where there is room.
-pub fn pareto(frame: &DataFrame) -> Result<Figure, PlotError> {
-    let (durations, residuals) = (reals(frame, "t_f [s]")?, reals(frame, "residual [°]")?);
-    let weights = reals(frame, "weight_base")?;
-    let efficient = frame.column("efficient")?.bool()?;
-    let efficient: Vec<bool> = efficient.iter().map(|e| e.unwrap_or(false)).collect();
-    let points: Vec<[f64; 2]> = durations.iter().zip(&residuals).map(|(t, r)| [*t, *r]).collect();
-    let chosen = |wanted: bool| -> Vec<[f64; 2]> {
-        points.iter().zip(&efficient).filter(|(_, e)| **e == wanted).map(|(p, _)| *p).collect()
-    };
-    let mut front = chosen(true);
-    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let x = Axis::linear(&duration(), range(durations.iter().copied(), 0.0), 0.12);
-    let y = Axis::linear("residual [°]", range(residuals.iter().copied(), 0.0), 0.08);
-    let stroke = Stroke::of(0).with_marker(Marker::Circle);
-    let points_of = |name: &str, hollow: bool, points: Vec<[f64; 2]>| Mark::Points {
-        name: name.to_owned(),
-        stroke: Stroke { hollow, width: 0.0, ..stroke },
-        points,
-    };
-    let corner = |w: &[[f64; 2]]| [[w[0][0], w[0][1]], [w[1][0], w[0][1]], w[1]];
-    let stairs = front.windows(2).flat_map(corner).collect();
-    let mut marks = vec![Mark::Line(Line::new("", Stroke::reference(), stairs))];
-    let beaten = chosen(false);
-    if !beaten.is_empty() {
-        marks.push(points_of("beaten by another weight", true, beaten));
-    }
-    marks.push(points_of("efficient", false, front));
-    let places: Vec<[f64; 2]> = points.iter().map(|[a, b]| [x.place(*a), y.place(*b)]).collect();
-    for (cluster, weights) in clusters(&places, &weights) {
-        let [at_x, at_y] = places[cluster];
-        let is_right = at_x > 0.6;
-        let is_free = |other: &[f64; 2]| {
-            let (along, up) = (other[0] - at_x, (other[1] - at_y).abs());
-            let away = if is_right { -along } else { along };
-            up > 0.09 || away < -TOGETHER || away.abs() < TOGETHER
-        };
-        if places.iter().all(is_free) {
-            let anchor = if is_right { Anchor::Right } else { Anchor::Left };
-            let text = told(&weights);
-            marks.push(Mark::Label { at: points[cluster], text, anchor, raised: ABOVE_FRONT });
-        }
-    }
-    Ok(Figure::column(vec![Panel::new(x, y, marks)], 44.0))
-}
-
-/// Points that lie on each other: the first one's index, and the weights of all.
-fn clusters(places: &[[f64; 2]], weights: &[f64]) -> Vec<(usize, Vec<f64>)> {
-    let mut clusters: Vec<(usize, Vec<f64>)> = Vec::new();
-    for (i, [x, y]) in places.iter().enumerate() {
-        let near = |first: usize| {
-            (places[first][0] - x).abs() < TOGETHER && (places[first][1] - y).abs() < TOGETHER
-        };
-        match clusters.iter_mut().find(|(first, _)| near(*first)) {
-            Some((_, own)) => own.push(weights[i]),
-            None => clusters.push((i, vec![weights[i]])),
-        }
-    }
-    clusters
-}
-
-/// Weights as one number or as a range.
-fn told(weights: &[f64]) -> String {
-    let low = weights.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if low == high { format!("{K_B} = {low}") } else { format!("{K_B} = {low} to {high}") }
 }

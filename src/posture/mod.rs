@@ -5,7 +5,7 @@ mod satellite;
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Serialize;
 
-pub use satellite::Satellite;
+pub use satellite::{Satellite, SolarPanel};
 
 use crate::kinematics::{Outward, tool};
 use crate::robot::Robot;

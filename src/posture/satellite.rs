@@ -11,8 +11,54 @@ pub struct Satellite {
     pub half: [f64; 3],
     /// Where the arm sits, in base axes \[m\].
     pub mount: [f64; 3],
-    /// The axis, 0 to 2, along which the panels stand out on both sides.
-    pub panel_axis: usize,
+    /// The panels, on either side.
+    pub panels: [SolarPanel; 2],
+}
+
+/// A flat rectangle beside the box, base axes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SolarPanel {
+    /// Where the boom that holds it leaves the box and where it meets the panel \[m\].
+    pub boom: [[f64; 3]; 2],
+    /// One of the corners \[m\].
+    pub corner: [f64; 3],
+    /// From that corner outward and across, the panel's edges \[m\].
+    pub edges: [[f64; 3]; 2],
+}
+
+/// A panel's length, width and distance, in half edges of the box.
+const LENGTH: f64 = 3.4;
+const WIDTH: f64 = 1.5;
+const GAP: f64 = 0.5;
+
+impl SolarPanel {
+    /// Along an axis of the box, on one side, ±1.
+    fn of(half: [f64; 3], axis: usize, side: f64) -> Self {
+        let across = usize::from(axis != 1);
+        let along = |places: &[(usize, f64)]| {
+            let mut place = [0.0; 3];
+            for &(k, length) in places {
+                place[k] = length;
+            }
+            place
+        };
+        let root = side * (1.0 + GAP) * half[axis];
+        Self {
+            boom: [along(&[(axis, side * half[axis])]), along(&[(axis, root)])],
+            corner: along(&[(axis, root), (across, -0.5 * WIDTH * half[across])]),
+            edges: [
+                along(&[(axis, side * LENGTH * half[axis])]),
+                along(&[(across, WIDTH * half[across])]),
+            ],
+        }
+    }
+
+    /// The four corners, in turn \[m\].
+    pub fn corners(&self) -> [[f64; 3]; 4] {
+        let [out, across] = self.edges;
+        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+            .map(|(a, b)| std::array::from_fn(|k| self.corner[k] + a * out[k] + b * across[k]))
+    }
 }
 
 /// How far within a face's edge the mount lies at least, as a share of half the edge.
@@ -38,7 +84,8 @@ impl Satellite {
                 *half = mount[k].abs();
             }
         }
-        Self { half, mount, panel_axis: if face == 1 { 2 } else { 1 } }
+        let axis = if face == 1 { 2 } else { 1 };
+        Self { half, mount, panels: [1.0, -1.0].map(|side| SolarPanel::of(half, axis, side)) }
     }
 }
 
@@ -57,14 +104,15 @@ mod tests {
         for (found, expected) in satellite.half.iter().zip([1.0, 1.5, 2.0]) {
             assert!((found - expected).abs() < 1e-12, "{:?}", satellite.half);
         }
-        assert_eq!(satellite.panel_axis, 2);
+        assert_eq!(satellite.panels[0].boom, [[0.0, 0.0, 2.0], [0.0, 0.0, 3.0]]);
     }
 
     #[test]
     fn the_mount_lies_on_a_face() {
         let robot = Robot::from_document(&Robot::embedded("xiao2023").unwrap()).unwrap();
-        let Satellite { half, mount, panel_axis } = Satellite::of(&robot);
-        assert_eq!((half[2], panel_axis), (mount[2], 1));
+        let Satellite { half, mount, panels } = Satellite::of(&robot);
+        assert_eq!(half[2], mount[2]);
+        assert_eq!(panels[1].corners()[2][1], -half[1] * (1.5 + 3.4));
         assert!(half[0] > mount[0].abs() && half[1] > mount[1].abs());
     }
 }

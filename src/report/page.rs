@@ -23,6 +23,8 @@ pub struct Page<'a> {
     pub findings: &'a [Finding],
     /// The motions to be shown; none for problems that have none.
     pub scenes: &'a [Scene],
+    /// How many instances have a motion, shown or not.
+    pub motions_found: usize,
     /// The charts.
     pub charts: &'a [Chart],
     /// The tables; curves are there to download.
@@ -76,6 +78,7 @@ struct Content<'a> {
     script: String,
     findings: &'a [Finding],
     scenes: &'a [Scene],
+    motions_found: usize,
     motions: Embedded,
     figures: Vec<FigureContent<'a>>,
     tables: Vec<TableContent<'a>>,
@@ -117,6 +120,7 @@ impl Page<'_> {
             script: SCRIPTS.join("\n"),
             findings: self.findings,
             scenes: self.scenes,
+            motions_found: self.motions_found,
             motions: Embedded::new(&motions(self.scenes)?)?,
             figures: figures.collect::<Result<_, PageError>>()?,
             tables: tables.collect::<Result<_, PageError>>()?,
@@ -200,6 +204,7 @@ mod tests {
             name,
             findings: &[],
             scenes: &[],
+            motions_found: 0,
             charts: &[],
             tables: &[table],
             files: &[("experiment.toml".to_owned(), "name = '<b>'".to_owned())],

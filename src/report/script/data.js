@@ -11,6 +11,17 @@ async function embedded(script) {
   return new Response(stream).text();
 }
 
+/** Says in place of an element's content that it cannot be read: for a browser without decompression. */
+function unread(element) {
+  return (error) => {
+    const note = document.createElement("p");
+    note.className = "note";
+    note.textContent = `This browser cannot read what belongs here (${error.message}).`;
+    element.after(note);
+    return null;
+  };
+}
+
 /** The text of a table as comma-separated values. */
 function tableText(name) {
   return embedded(document.querySelector(`script[data-table="${CSS.escape(name)}"]`));

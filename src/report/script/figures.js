@@ -34,7 +34,9 @@ async function fillFigures() {
   for (const figure of document.querySelectorAll("figure[data-name]")) {
     const { name } = figure.dataset;
     const script = figure.querySelector("script");
-    script.outerHTML = await embedded(script);
+    const text = await embedded(script).catch(unread(script));
+    if (text === null) continue;
+    script.outerHTML = text;
     const drawing = figure.querySelector("svg");
     figure.querySelector(".svg").addEventListener("click", () => {
       download(`${name}.svg`, standalone(drawing).text, "image/svg+xml");

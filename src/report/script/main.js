@@ -28,8 +28,9 @@ function offerTheme(changed) {
 async function openPlayer() {
   const section = document.getElementById("motion");
   if (!section) return null;
-  const scenes = JSON.parse(await embedded(document.getElementById("motions")));
-  return new Player(section, scenes);
+  const script = document.getElementById("motions");
+  const text = await embedded(script).catch(unread(script));
+  return text === null ? null : new Player(section, JSON.parse(text));
 }
 
 offerDownloads();

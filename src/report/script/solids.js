@@ -65,22 +65,9 @@ function tube(from, to, radii, colour, { sides = 12, segments = 1, end = colour 
   return faces;
 }
 
-/** The panels' size, in edges of the body. */
-const PANEL = { length: 3.4, width: 1.5, gap: 0.5 };
-
-/** The two panels of a satellite: each a sheet of cells, its outline and the boom that holds it; base axes. */
-function panels({ half, panel_axis: axis }) {
-  const flat = axis === 1 ? 0 : 1;
-  const along = (k, amount) => [0, 1, 2].map((i) => (i === k ? amount : 0));
-  const edge = half[axis];
-  const [reach, width] = [PANEL.length * edge, PANEL.width * half[flat]];
-  return [1, -1].map((side) => {
-    const root = along(axis, side * (edge + PANEL.gap * edge));
-    const corner = add(root, along(flat, -width / 2));
-    const [out, across] = [along(axis, side * reach), along(flat, width)];
-    const outline = [corner, add(corner, out), add(add(corner, out), across), add(corner, across)];
-    return { root, base: along(axis, side * edge), corner, out, across, outline };
-  });
+/** The corners of a solar panel, base axes. */
+function outlineOf({ corner, edges: [out, across] }) {
+  return [corner, add(corner, out), add(add(corner, out), across), add(corner, across)];
 }
 
 /** The satellite in base axes; the arm's mount and the front, along x, can be told from the rest. */
@@ -89,9 +76,9 @@ function satelliteFaces(satellite, colours) {
   const nose = 0.28 * Math.min(half[1], half[2]);
   const faces = box([0, 0, 0], half, { "+x": colours.front, other: colours.body }, 8);
   faces.push(...tube([half[0], 0, 0], [half[0] + 0.9 * nose, 0, 0], [0.55 * nose, 1.5 * nose], colours.front, { sides: 18, segments: 3, end: colours.tool }));
-  for (const { root, base, corner, out, across } of panels(satellite)) {
-    faces.push(...tube(base, root, [0.06 * half[0], 0.06 * half[0]], colours.joint, { sides: 6 }));
-    faces.push(...patch(corner, out, across, 8, 3, colours.panel));
+  for (const { boom, corner, edges } of satellite.panels) {
+    faces.push(...tube(...boom, [0.06 * half[0], 0.06 * half[0]], colours.joint, { sides: 6 }));
+    faces.push(...patch(corner, ...edges, 8, 3, colours.panel));
   }
   return faces;
 }

@@ -140,6 +140,7 @@ class DataTable {
 /** Fills in every table of the page. */
 async function fillTables() {
   for (const section of document.querySelectorAll(".table")) {
-    new DataTable(section, parseCsv(await tableText(section.dataset.name)));
+    const text = await tableText(section.dataset.name).catch(unread(section));
+    if (text !== null) new DataTable(section, parseCsv(text));
   }
 }

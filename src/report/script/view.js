@@ -38,7 +38,7 @@ class View {
   show(scene) {
     this.scene = scene;
     this.palette = null;
-    const outline = panels(scene.satellite).flatMap((panel) => panel.outline);
+    const outline = scene.satellite.panels.flatMap(outlineOf);
     const corners = [...outline, ...boxEdges([0, 0, 0], scene.satellite.half).flat()];
     const places = [...scene.frames, scene.goal].flatMap(({ position, attitude, origins }) =>
       [...corners, ...origins].map((point) => add(position, turn(attitude, point))),
@@ -188,7 +188,7 @@ class View {
     const { context, palette } = this;
     const { goal, satellite } = this.scene;
     const place = (point) => add(goal.position, turn(goal.attitude, point));
-    const loops = panels(satellite).flatMap(({ outline }) => outline.map((from, i) => [from, outline[(i + 1) % 4]]));
+    const loops = satellite.panels.map(outlineOf).flatMap((outline) => outline.map((from, i) => [from, outline[(i + 1) % 4]]));
     const edges = [...boxEdges([0, 0, 0], satellite.half), ...loops];
     context.setLineDash([5, 4]);
     for (const [from, to] of edges) this.line(place(from), place(to), palette.ghost, 1.3, 0.85)?.draw();
