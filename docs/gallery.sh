@@ -1,0 +1,29 @@
+#!/bin/sh
+# Runs the experiments of the gallery, and copies their pictures and a picture of the page to docs/gallery.
+# Needs `driftless` on the path; the picture of the page needs Python 3.11 or later, PyPI and Chromium, too.
+#   docs/gallery.sh [RESULTS]    # folder of the results; what is stored there is not run again
+set -eu
+cd "$(dirname "$0")/.."
+results=${1:-results}
+gallery=docs/gallery
+
+for experiment in default functions poses jerk-sweep weight-sweep terms-sweep; do
+    driftless run "experiments/$experiment.toml" --out "$results/$experiment" --quiet
+done
+
+# SVG where it is small enough for a repository.
+for picture in \
+    poses/convergence.svg poses/final-costs.svg \
+    poses/running-time-distribution.svg poses/expected-running-time.svg \
+    functions/performance-profiles.svg functions/data-profiles.svg \
+    poses/critical-difference.svg functions/effect-sizes.svg \
+    jerk-sweep/jerk-sweep.svg weight-sweep/weight-sweep.svg terms-sweep/terms-sweep.svg weight-sweep/pareto.svg \
+    default/snapshots.svg default/joint-angles.svg default/joint-derivatives.png default/base-attitude.svg; do
+    cp "$results/${picture%/*}/figures/${picture#*/}" "$gallery"
+done
+
+venv=target/gallery/venv
+[ -x "$venv/bin/python" ] || python3 -m venv "$venv"
+"$venv/bin/python" -m pip install --quiet --disable-pip-version-check -r tests/page/requirements.txt pillow==13.0.0
+PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tests/page \
+    "$venv/bin/python" "$gallery/page.py" "$results/default/report.html" "$gallery/page.png"
