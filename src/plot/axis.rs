@@ -15,6 +15,8 @@ pub(super) struct Axis {
 #[derive(Debug, Clone)]
 enum Scale {
     Linear,
+    /// Linear, with ticks at whole numbers alone.
+    Whole,
     Logarithmic,
     /// Names at 0, 1, …
     Names(Vec<String>),
@@ -50,6 +52,11 @@ impl Axis {
         let names: Vec<String> = names.iter().map(|name| fitted(name, LONGEST_NAME)).collect();
         let range = [-0.5, names.len() as f64 - 0.5];
         Self { label: label.to_owned(), range, scale: Scale::Names(names) }
+    }
+
+    /// The same with ticks at whole numbers alone, where it is linear.
+    pub(super) fn whole(self) -> Self {
+        Self { scale: Scale::Whole, ..self }
     }
 
     /// The other way round.
@@ -105,7 +112,8 @@ impl Axis {
                 let name = |(i, name): (usize, &String)| (i as f64, name.clone());
                 return placed(names.iter().enumerate().map(name).collect());
             }
-            Scale::Linear => linear_ticks(low, high),
+            Scale::Linear => linear_ticks(low, high, i32::MIN),
+            Scale::Whole => linear_ticks(low, high, 0),
             Scale::Logarithmic => logarithmic_ticks(low, high),
         };
         choices.into_iter().map(placed).find(fits).unwrap_or_default()
@@ -123,10 +131,10 @@ impl Axis {
     }
 }
 
-/// Steps of 1, 2 or 5 times a power of ten, the smallest first.
-fn linear_ticks(low: f64, high: f64) -> Vec<Vec<(f64, String)>> {
+/// Steps of 1, 2 or 5 times a power of ten, `least` or above, the smallest first.
+fn linear_ticks(low: f64, high: f64, least: i32) -> Vec<Vec<(f64, String)>> {
     let rough = (high - low) / MOST_INTERVALS;
-    let power = rough.log10().floor() as i32;
+    let power = (rough.log10().floor() as i32).max(least);
     let steps = (power..power + 3).flat_map(|p| [1.0, 2.0, 5.0].map(|m| (m, p)));
     let steps = steps.filter(|(m, p)| m * 10_f64.powi(*p) >= rough);
     let ticks = steps.map(|(m, p)| {
@@ -145,7 +153,7 @@ fn logarithmic_ticks(low: f64, high: f64) -> Vec<Vec<(f64, String)>> {
     // Powers that are written out stand beside no others.
     let written_out = low > -3.1 && high < 4.1;
     if decades < 0.7 && written_out {
-        let ticks = linear_ticks(10_f64.powf(low), 10_f64.powf(high));
+        let ticks = linear_ticks(10_f64.powf(low), 10_f64.powf(high), i32::MIN);
         let logarithms = |ticks: Vec<(f64, String)>| {
             ticks.into_iter().map(|(at, text)| (at.log10(), text)).collect()
         };

@@ -83,7 +83,7 @@ impl Maker<'_> {
             let figure = convergence::convergence(frame, &self.looks, symbol)?;
             let caption = format!(
                 "Best {symbol} so far against evaluations: the median over the runs, with the quartiles as a band. A run that \
-                 ended early keeps the best it had."
+                 ended early keeps the best it had. Costs below 10⁻⁹ stand at the lower end."
             );
             self.add("convergence", "Convergence", &caption, "convergence", figure);
         }
@@ -93,7 +93,8 @@ impl Maker<'_> {
             let figure = comparison::final_costs(frame, &self.looks, symbol)?;
             let caption = format!(
                 "Final {symbol} of all runs, certified: quartiles as a box, the least and the largest as whiskers, single \
-                 runs as points where there are thirty at most. Runs that failed are counted at the end."
+                 runs as points where there are thirty at most. Runs that failed are counted at the end, \
+                 costs below 10⁻¹⁰ stand at the beginning."
             );
             self.add("final-costs", "Final costs", &caption, "runs", figure);
         }
@@ -116,8 +117,9 @@ impl Maker<'_> {
             let name = "expected-running-time";
             self.add(name, "Expected running time", caption, name, figure);
         }
-        if let Some(frame) = self.frame("performance-profiles") {
-            let label = "multiple of the fewest evaluations";
+        let is_race = self.plan.optimisers.len() > 1;
+        if let Some(frame) = self.frame("performance-profiles").filter(|_| is_race) {
+            let label = "ratio to the fewest evaluations";
             let figure = running_times::profiles(frame, &self.looks, "ratio", label)?;
             let caption = "Share of problems, each an instance with a seed, whose target is reached within a multiple of the \
                 evaluations that the fastest optimiser needs there.";
@@ -148,7 +150,7 @@ impl Maker<'_> {
         };
         let (of_ranks, of_pairs) = (told("ranks"), told("pairs"));
         let caption = format!(
-            "Bars join the optimisers of a clique; the bracket is Nemenyi's critical difference at level {ALPHA}, a test of its \
+            "Bars join cliques and are thick at their members; the bracket is Nemenyi's critical difference at level {ALPHA}, a test of its \
              own on ranks alone, from which bars need not follow.{of_ranks}"
         );
         self.add("critical-difference", "Critical differences", &caption, "ranks", Some(diagram));
@@ -222,14 +224,14 @@ fn told(swept: Swept) -> (&'static str, &'static str, &'static str) {
         Swept::JerkLimit => (
             "jerk-sweep",
             "Limit on jerks",
-            "Duration of the best motion against the limit on jerks. The dotted line, where there is one, is the \
+            "Duration of the best motion against the limit on jerks. The dashed line, where there is one, is the \
              law that holds while jerk alone limits the motion.",
         ),
         Swept::Terms => (
             "terms-sweep",
             "Number of terms",
-            "Cost of the best motion against the number of free coefficients a joint. The dotted line, where there is one, \
-             is the least cost found for motions of any shape.",
+            "Cost of the best motion against the number of free coefficients a joint. The dashed line, where there is one, \
+             is the least cost found for motions of any shape, of piecewise constant jerk.",
         ),
     }
 }

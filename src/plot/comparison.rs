@@ -8,7 +8,7 @@ use super::figure::{Figure, PlotError};
 use super::looks::Looks;
 use super::marks::Mark;
 use super::panel::{MARGIN, Panel};
-use super::sheet::{Anchor, fitted};
+use super::sheet::{Anchor, fitted, titled};
 use super::style::{COLOURS, GRID, PAPER, Stroke, Width, mix};
 use crate::analysis::ALPHA;
 use crate::analysis::statistics::quantile;
@@ -62,7 +62,7 @@ pub fn final_costs(
         });
         let names: Vec<String> = labels.iter().map(|&label| label.to_owned()).collect();
         let marks = marks.collect();
-        Panel::new(x, Axis::names("", &names).reversed(), marks).titled(group)
+        Panel::new(x, Axis::names("", &names).reversed(), marks).titled(&titled(group))
     };
     let mut figure = Figure::grid(panels.into_iter().map(panel).collect());
     figure.height = ROW * labels.len() as f64;
@@ -115,7 +115,11 @@ pub fn effect_sizes(pairs: &DataFrame, ranks: &DataFrame) -> Result<Figure, Plot
     let (first, second) = (texts(pairs, "first")?, texts(pairs, "second")?);
     let (effects, p) = (reals(pairs, "A12")?, reals(pairs, "p Holm")?);
     let count = order.len();
-    let points = if count > 8 { 5.5 } else { 7.0 };
+    let points = match count {
+        0..=5 => 7.0,
+        6..=8 => 6.0,
+        _ => 5.5,
+    };
     let mut marks: Vec<Mark> =
         (0..count).map(|i| cell(i, i, GRID, String::new(), points)).collect();
     for (i, (first, second)) in first.iter().zip(&second).enumerate() {
@@ -133,7 +137,7 @@ pub fn effect_sizes(pairs: &DataFrame, ranks: &DataFrame) -> Result<Figure, Plot
     let numbers: Vec<String> = (1..=count).map(|n| n.to_string()).collect();
     let names = order.iter().enumerate();
     let names: Vec<String> =
-        names.map(|(i, name)| format!("{}  {}", fitted(name, LONGEST_NAME), i + 1)).collect();
+        names.map(|(i, name)| format!("{}\u{2002}{}", fitted(name, LONGEST_NAME), i + 1)).collect();
     let x = Axis::names("the row's runs end lower than the column's", &numbers);
     let panel = Panel::new(x, Axis::names("", &names).reversed(), marks);
     let width = if count > 8 { Width::Page } else { Width::Column };

@@ -3,7 +3,7 @@
 use polars::prelude::DataFrame;
 
 use super::axis::Axis;
-use super::curves::{Curve, curves, facets, range};
+use super::curves::{Curve, curves, facets, range, stepped};
 use super::figure::{Figure, PlotError};
 use super::looks::Looks;
 use super::marks::{Line, Mark, Marked};
@@ -56,13 +56,15 @@ pub(super) fn curve_line(curve: &Curve, points: Vec<[f64; 2]>, looks: &Looks) ->
 
 fn median(curve: &Curve) -> Vec<[f64; 2]> {
     let points = curve.points.iter().filter(|(_, y)| y[1].is_finite());
-    points.map(|(x, y)| [*x, y[1].max(LOWEST)]).collect()
+    stepped(points.map(|(x, y)| [*x, y[1].max(LOWEST)]))
 }
 
 fn band(curve: &Curve, looks: &Looks) -> Mark {
     let points = curve.points.iter().filter(|(_, y)| y.iter().all(|v| v.is_finite()));
+    let quartile = |k: usize| stepped(points.clone().map(|(x, y)| [*x, y[k].max(LOWEST)]));
+    let ends = quartile(0).into_iter().zip(quartile(2));
     Mark::Band {
         colour: looks.stroke(&curve.optimiser).colour,
-        points: points.map(|(x, y)| [*x, y[0].max(LOWEST), y[2].max(LOWEST)]).collect(),
+        points: ends.map(|([x, low], [_, high])| [x, low, high]).collect(),
     }
 }

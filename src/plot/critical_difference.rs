@@ -15,12 +15,16 @@ use super::style::{INK, Stroke, TEXT_PT, Width};
 const ROW: f64 = 4.2;
 const BAR: f64 = 1.6;
 /// Height of the axis of ranks below the upper end \[mm\].
-const AXIS: f64 = 8.5;
+const AXIS: f64 = 9.4;
 /// Longest label \[mm\]; a longer one ends with an ellipsis.
 const LONGEST_NAME: f64 = 50.0;
 /// Room between the axis and where a label's line ends, and the shortest axis in a column \[mm\].
 const GAP: f64 = 1.2;
-const SHORTEST: f64 = 26.0;
+const SHORTEST: f64 = 20.0;
+/// Least distance of two ranks in a column \[mm\].
+const RANK: f64 = 3.2;
+/// How far a bar reaches over a member \[mm\].
+const OVER: f64 = 0.8;
 
 /// Everything in millimetres.
 struct Diagram {
@@ -77,7 +81,8 @@ pub fn critical_difference(
         texts.iter().map(|t| text_width(t, TEXT_PT)).fold(0.0, f64::max) + 2.0 * GAP + 1.0
     };
     let (left, right) = (widest(&told[..half]), widest(&told[half..]));
-    let fits = Width::Column.mm() - left - right >= SHORTEST;
+    let shortest = f64::max(SHORTEST, RANK * count as f64);
+    let fits = Width::Column.mm() - left - right >= shortest;
     let width = if fits { Width::Column } else { Width::Page };
     let mut diagram = Diagram { from: left, to: width.mm() - right, count, marks: Vec::new() };
     diagram.axis();
@@ -120,29 +125,35 @@ pub fn critical_difference(
     Ok(Figure { width, across: 1, height, panels: vec![panel] })
 }
 
-/// Draws a bar for each clique and tells how many lines of bars there are.
+/// Draws a bar for each clique, thick at its members, and tells how many lines of bars there are.
 fn bars(diagram: &mut Diagram, means: &[f64], cliques: &[String]) -> usize {
-    let mut ends: Vec<(String, [f64; 2])> = Vec::new();
+    let mut members: Vec<(&str, Vec<f64>)> = Vec::new();
     for (mean, of) in means.iter().zip(cliques) {
         for clique in of.split_whitespace() {
-            match ends.iter_mut().find(|(name, _)| name == clique) {
-                Some((_, ends)) => *ends = [ends[0].min(*mean), ends[1].max(*mean)],
-                None => ends.push((clique.to_owned(), [*mean; 2])),
+            match members.iter_mut().find(|(name, _)| *name == clique) {
+                Some((_, means)) => means.push(*mean),
+                None => members.push((clique, vec![*mean])),
             }
         }
     }
     // Each bar goes into the first line where it has room.
     let mut lines: Vec<f64> = Vec::new();
-    for (_, [low, high]) in ends {
-        let (from, to) = (diagram.x(low) - 0.8, diagram.x(high) + 0.8);
-        let line = lines.iter().position(|&end| end + 1.5 < from).unwrap_or(lines.len());
+    for (_, members) in members {
+        // Ranks ascend.
+        let (from, to) = (diagram.x(members[0]), diagram.x(members[members.len() - 1]));
+        let (from, to) = (from - OVER, to + OVER);
+        let line = lines.iter().position(|&end| end + 2.0 * OVER < from).unwrap_or(lines.len());
         if line == lines.len() {
             lines.push(to);
         } else {
             lines[line] = to;
         }
         let y = AXIS + 2.0 + BAR * line as f64;
-        diagram.line(vec![[from, y], [to, y]], Stroke::plain(INK, 0.8));
+        diagram.line(vec![[from, y], [to, y]], Stroke::plain(INK, 0.3));
+        for member in members {
+            let x = diagram.x(member);
+            diagram.line(vec![[x - OVER, y], [x + OVER, y]], Stroke::plain(INK, 0.9));
+        }
     }
     lines.len()
 }

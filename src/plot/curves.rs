@@ -3,7 +3,7 @@
 use polars::prelude::*;
 
 use super::looks::Looks;
-use super::sheet::printable;
+use super::sheet::{printable, titled};
 
 /// One curve.
 #[derive(Debug, Clone, Default)]
@@ -77,12 +77,23 @@ pub(super) fn facets<'a>(curves: &'a [Curve], looks: &Looks) -> Option<Vec<Facet
         let all = curves.iter().filter(|curve| curve.panel == panel);
         let (curves, others) =
             all.partition(|curve| kind.is_empty() || looks.kind(&curve.optimiser) == kind);
-        let titles = [panel, kind].into_iter().filter(|title| !title.is_empty());
-        Facet { title: titles.collect::<Vec<_>>().join(", "), curves, others }
+        let titles = [titled(panel), kind.to_owned()].into_iter();
+        let titles: Vec<String> = titles.filter(|title| !title.is_empty()).collect();
+        Facet { title: titles.join(", "), curves, others }
     };
     let kinds = if by_kind { kinds } else { vec![""] };
     let facets = panels.iter().flat_map(|panel| kinds.iter().map(|kind| facet(panel, kind)));
     (panels.len() <= MOST_PANELS).then(|| facets.filter(|f| !f.curves.is_empty()).collect())
+}
+
+/// A curve that keeps each value up to the next.
+pub(super) fn stepped(values: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for [x, y] in values {
+        points.extend(points.last().map(|&[_, before]| [x, before]));
+        points.push([x, y]);
+    }
+    points
 }
 
 /// The smallest and the largest finite value, none below `lowest`.

@@ -64,7 +64,7 @@ pub(super) struct Line {
 pub(super) enum Marked {
     /// At every point.
     Points,
-    /// At even distances, begun at this share of one, so that lines on each other can be told apart.
+    /// At even distances across, begun at this share of one, so that lines on each other can be told apart.
     Evenly(f64),
 }
 
@@ -110,20 +110,18 @@ impl Line {
     }
 }
 
-/// Places on a line, at even distances.
+/// Places on a line, at even distances across.
 fn evenly(places: &[Place], first: f64) -> Vec<Place> {
+    let Some([start, _]) = places.first() else { return Vec::new() };
     let mut marked = Vec::new();
-    let mut next = first;
-    let mut done = 0.0;
+    let mut next = start + first;
     for ends in places.windows(2) {
         let ([x, y], [to_x, to_y]) = (ends[0], ends[1]);
-        let length = (to_x - x).hypot(to_y - y);
-        while next <= done + length && length > 0.0 {
-            let share = (next - done) / length;
-            marked.push([x + share * (to_x - x), y + share * (to_y - y)]);
+        while next <= to_x && to_x > x {
+            let share = (next - x) / (to_x - x);
+            marked.push([next, y + share * (to_y - y)]);
             next += MARKER_DISTANCE;
         }
-        done += length;
     }
     marked
 }

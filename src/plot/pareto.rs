@@ -7,7 +7,7 @@ use super::curves::{range, reals, texts};
 use super::figure::{Figure, PlotError};
 use super::marks::{Line, Mark};
 use super::panel::Panel;
-use super::sheet::{Anchor, K_B};
+use super::sheet::{Anchor, K_B, titled};
 use super::style::{Marker, Stroke};
 use super::sweeps::{MOST_CURVES, duration, without};
 
@@ -96,9 +96,10 @@ pub fn pareto(frame: &DataFrame) -> Result<Option<Figure>, PlotError> {
     let mut marks = Vec::new();
     for (i, front) in fronts.iter().enumerate() {
         let stroke = Stroke::of(i).with_marker(Marker::ALL[i % Marker::ALL.len()]);
+        let name = titled(&front.name);
         let names = match fronts.len() {
             1 => ["efficient", "beaten by another weight"],
-            _ => [front.name.as_str(), ""],
+            _ => [name.as_str(), ""],
         };
         marks.extend(front.marks(stroke, names));
     }

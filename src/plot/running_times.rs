@@ -4,7 +4,7 @@ use polars::prelude::DataFrame;
 
 use super::axis::Axis;
 use super::convergence::{curve_line, faint};
-use super::curves::{Curve, MOST_PANELS, curves, facets, range};
+use super::curves::{Curve, MOST_PANELS, curves, facets, range, stepped};
 use super::figure::{Figure, PlotError};
 use super::looks::Looks;
 use super::marks::{Line, Mark};
@@ -26,7 +26,7 @@ pub fn running_time_distribution(
     let evaluations = range(curves.iter().flat_map(|c| &c.points).map(|(x, _)| *x), 1.0);
     let panels = facets.into_iter().map(|facet| {
         let column =
-            |curve: &Curve, k: usize| curve.points.iter().map(|(x, y)| [*x, y[k]]).collect();
+            |curve: &Curve, k: usize| stepped(curve.points.iter().map(|(x, y)| [*x, y[k]]));
         let mut marks: Vec<Mark> = facet.others.iter().map(|c| faint(column(c, 0))).collect();
         for curve in &facet.curves {
             let thin = Stroke { width: 0.15, marker: None, ..looks.stroke(&curve.optimiser) };
@@ -95,14 +95,8 @@ pub fn profiles(
 
 /// A profile keeps each share up to the next step, and the last to the end.
 fn steps(curve: &Curve, low: f64, high: f64) -> Vec<[f64; 2]> {
-    let mut points: Vec<[f64; 2]> = Vec::new();
-    for (x, y) in &curve.points {
-        let x = x.max(low);
-        if let Some(&[_, before]) = points.last() {
-            points.push([x, before]);
-        }
-        points.push([x, y[0]]);
-    }
+    let shares = curve.points.iter().map(|(x, y)| [x.max(low), y[0]]);
+    let mut points = stepped(shares);
     points.extend(points.last().map(|&[_, share]| [high, share]));
     points
 }

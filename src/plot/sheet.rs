@@ -58,6 +58,19 @@ pub(super) fn printable(text: &str) -> String {
     text.chars().map(|c| if is_printable(c) { c } else { '\u{FFFD}' }).collect()
 }
 
+/// An instance's label as a title: settings by their symbols and units.
+pub(super) fn titled(label: &str) -> String {
+    let part = |part: &str| match part.split_once('=') {
+        Some(("weight_base", value)) => format!("{K_B} = {value}"),
+        Some(("rate_limit_deg_s", value)) => format!("rate ≤ {value} °/s"),
+        Some(("acceleration_limit_deg_s2", value)) => format!("acceleration ≤ {value} °/s²"),
+        Some(("jerk_limit_deg_s3", value)) => format!("jerk ≤ {value} °/s³"),
+        Some(("terms", value)) => format!("terms = {value}"),
+        _ => part.to_owned(),
+    };
+    label.split(' ').map(part).collect::<Vec<_>>().join(" ")
+}
+
 /// A raised text.
 pub(super) fn raised(text: &str) -> String {
     format!("{RAISED}{text}{LEVEL}")

@@ -113,6 +113,12 @@ fn drawing(view: &View, satellite: &Satellite, task: &Task, way: &[Snapshot]) ->
     let place = |corner: &Vector3<f64>| view.of(&(now.base + now.attitude * corner));
     let is_near = |place: &Vector3<f64>| view.towards.dot(&(place - now.base)) > 0.0;
     let (mut behind, mut before) = (Vec::new(), Vec::new());
+    let tool: Vec<Vector3<f64>> = way.iter().filter_map(|s| s.arm.last().copied()).collect();
+    for piece in tool.chunk_by(|a, b| is_near(a) == is_near(b)) {
+        let marks = if is_near(&piece[0]) { &mut before } else { &mut behind };
+        let points = piece.iter().map(|place| view.of(place)).collect();
+        marks.push(Mark::Line(Line::new("", Stroke::plain(COLOURS[1], 0.25), points)));
+    }
     for link in now.arm.windows(2) {
         let ends = [view.of(&link[0]), view.of(&link[1])];
         let stroke = Stroke::plain(INK, 0.9).with_marker(Marker::Circle);
@@ -142,9 +148,6 @@ fn drawing(view: &View, satellite: &Satellite, task: &Task, way: &[Snapshot]) ->
     }
     marks.extend(goal(view, satellite, task, now));
     marks.extend(before);
-    let tool = way.iter().filter_map(|snapshot| snapshot.arm.last());
-    let stroke = Stroke::plain(COLOURS[1], 0.25);
-    marks.push(Mark::Line(Line::new("", stroke, tool.map(|tool| view.of(tool)).collect())));
     marks
 }
 

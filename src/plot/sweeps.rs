@@ -7,7 +7,7 @@ use super::curves::{range, reals, texts};
 use super::figure::{Figure, PlotError};
 use super::marks::{Line, Mark};
 use super::panel::{MARGIN, Panel, extent};
-use super::sheet::{K_B, T_F};
+use super::sheet::{K_B, T_F, titled};
 use super::style::{Marker, Stroke};
 
 /// A setting that can be swept.
@@ -95,7 +95,8 @@ impl Sweep {
             let points = curve.iter().map(|values| [values[0], values[ordinate]]).collect();
             let marker = Marker::ALL[i % Marker::ALL.len()];
             let stroke = Stroke::of(i).with_marker(marker);
-            Line::new(if self.names.len() > 1 { name } else { "" }, stroke, points)
+            let name = if self.names.len() > 1 { titled(name) } else { String::new() };
+            Line::new(&name, stroke, points)
         });
         lines.collect()
     }
@@ -118,6 +119,7 @@ pub fn sweep(
     let Some(sweep) = Sweep::of(best, swept)? else { return Ok(None) };
     let is_positive = sweep.curves.iter().flatten().all(|values| values[0] > 0.0);
     let x = match swept {
+        Swept::Terms => Axis::linear(&swept.label(), sweep.settings(), MARGIN).whole(),
         _ if swept == Swept::Terms || !is_positive => {
             Axis::linear(&swept.label(), sweep.settings(), MARGIN)
         }
@@ -142,7 +144,7 @@ pub fn sweep(
             Figure::column(panels, 30.0)
         }
         Swept::Terms => {
-            let level = |j| Line::level("free-form bound", j, sweep.settings());
+            let level = |j| Line::level("free form, least found", j, sweep.settings());
             let bound = bound.filter(|_| sweep.curves.len() == 1).map(level);
             Figure::column(vec![panel(sweep.lines(1), bound, "best J", false)], 44.0)
         }

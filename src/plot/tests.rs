@@ -225,7 +225,7 @@ fn charts() -> Vec<(&'static str, Figure)> {
         ("convergence-crowd", convergence_of(20, &[""])),
         ("running-time-distribution", distribution()),
         ("expected-running-time", expectation()),
-        ("performance-profiles", profile("ratio", "multiple of the fewest evaluations")),
+        ("performance-profiles", profile("ratio", "ratio to the fewest evaluations")),
         ("data-profiles", profile("simplex gradients", "simplex gradients")),
         ("final-costs", costs(0.05)),
         ("final-costs-wide", costs(3.0)),

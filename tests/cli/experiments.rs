@@ -255,3 +255,30 @@ fn unwritable_results_fail() {
     assert_eq!(output.status.code(), Some(1));
     insta::assert_snapshot!("unwritable_results", stderr(&output));
 }
+
+/// A report tells what is there, be it nothing, and no label keeps it from being drawn.
+#[test]
+fn reports_of_few_runs_and_odd_labels_are_whole() {
+    let text = "name = 'part'\nseeds = 2\nbudget = { evaluations = 100 }\n\
+        [[optimiser]]\nrandom = {}\nlabel = \"a\\u0007\\uE000 <b>&\"\n\
+        [[optimiser]]\nrandom = { formulation = 'raw' }\nlabel = 'block'\n\
+        [[optimiser]]\nrandom = { formulation = 'scaled' }\n";
+    let folder = Folder::new().with("part.toml", text);
+    run(&folder, &["part.toml", "--out", "out", "--shard", "0/6"]);
+    let report = |expected: &str| {
+        let output = folder.run(&["report", "out"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(stdout(&output).contains(expected), "{}", stdout(&output));
+        let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+        assert!(page.contains(expected) && page.trim_end().ends_with("</html>"));
+    };
+    report("Only 1 of 6 runs is stored so far");
+    for table in ["runs", "traces", "clocks"] {
+        std::fs::remove_dir_all(folder.path().join("out").join(table)).unwrap();
+    }
+    report("Only 0 of 6 runs are stored so far");
+    run(&folder, &["part.toml", "--out", "out"]);
+    report("Who won?");
+    let blocks = std::fs::read_to_string(folder.path().join("out/tables/blocks.csv")).unwrap();
+    assert!(blocks.contains("seed 1,"), "{blocks}");
+}
