@@ -75,7 +75,7 @@ const PAGE: &str = "report.html";
 /// Most instances whose best motion is told.
 const MOST_TOLD: usize = 24;
 
-/// Prints the summary of all stored runs of the plan; writes and draws all that they give.
+/// Prints what all stored runs of the plan say; writes and draws it.
 pub(super) fn report(
     plan: &Plan,
     store: &Store,
@@ -95,14 +95,7 @@ pub(super) fn report(
     for Finding { question, answer } in &findings {
         say!("\n{question}\n{}", textwrap::fill(answer, LINE));
     }
-    let mut tables = analysis.tables()?;
-    let mut charts = plot::charts(plan, &tables, runs.len())?;
-    // Costs of different instances do not compare, so there is no best of all to draw.
-    if let (1, [(run, problem)]) = (plan.instances.len(), &best[..]) {
-        let motion = Motion::sample(problem, &run.coefficients, run.duration, plot::SAMPLES);
-        charts.extend(plot::motion_charts(&motion, problem.task()));
-        tables.push(motion_table(&motion)?);
-    }
+    let (tables, charts) = tables_and_charts(plan, &analysis, runs.len(), &best)?;
     write_tables(&tables, &folder.join("tables"))?;
     write_charts(&charts, &folder.join("figures"))?;
     let page = Page {
@@ -123,6 +116,24 @@ pub(super) fn report(
         note!("warning: {failed} of {} runs failed or found nothing", runs.len());
     }
     Ok(())
+}
+
+/// All tables, and the charts of them; of a single instance those of its best motion too. Costs of different instances do
+/// not compare, so otherwise there is no best of all to draw.
+fn tables_and_charts(
+    plan: &Plan,
+    analysis: &Analysis<'_>,
+    stored: usize,
+    best: &[(&Run, &Reorientation)],
+) -> Result<(Vec<Table>, Vec<Chart>), CliError> {
+    let mut tables = analysis.tables()?;
+    let mut charts = plot::charts(plan, &tables, stored)?;
+    if let (1, [(run, problem)]) = (plan.instances.len(), best) {
+        let motion = Motion::sample(problem, &run.coefficients, run.duration, plot::SAMPLES);
+        charts.extend(plot::motion_charts(&motion, problem.task()));
+        tables.push(motion_table(&motion)?);
+    }
+    Ok((tables, charts))
 }
 
 /// The files that made the experiment, of those that are there.

@@ -48,6 +48,29 @@ impl Diagram {
         self.marks.push(Mark::Label { at, text, anchor, raised: 0.0 });
     }
 
+    /// The critical difference from the best rank on, where it ends before `last`.
+    fn bracket(&mut self, difference: f64, last: f64) {
+        let (from, to) = (self.from, self.x(1.0 + difference));
+        if to <= last {
+            let ink = Stroke::plain(INK, 0.25);
+            self.line(vec![[from, 3.8], [to, 3.8]], ink);
+            for x in [from, to] {
+                self.line(vec![[x, 3.3], [x, 4.3]], ink);
+            }
+        }
+        let told = format!("Nemenyi's critical difference {difference:.2}");
+        self.label([from - GAP, 1.6], told, Anchor::Left);
+    }
+
+    /// A mean rank on the axis, and a line from there to its label.
+    fn optimiser(&mut self, mean: f64, label: [f64; 2], stroke: Stroke) {
+        let x = self.x(mean);
+        let line = Stroke { width: 0.25, marker: None, ..stroke };
+        self.line(vec![[x, AXIS], [x, label[1]], label], line);
+        let stroke = Stroke { hollow: false, ..stroke };
+        self.marks.push(Mark::Points { name: String::new(), stroke, points: vec![[x, AXIS]] });
+    }
+
     fn axis(&mut self) {
         let ink = Stroke::plain(INK, 0.25);
         self.line(vec![[self.from, AXIS], [self.to, AXIS]], ink);
@@ -86,37 +109,20 @@ pub fn critical_difference(
     let width = if fits { Width::Column } else { Width::Page };
     let mut diagram = Diagram { from: left, to: width.mm() - right, count, marks: Vec::new() };
     diagram.axis();
-    let length = diagram.x(1.0 + difference) - diagram.x(1.0);
-    let told_difference = format!("Nemenyi's critical difference {difference:.2}");
-    if length.is_finite() && length <= width.mm() - 1.0 - left {
-        let end = left + length;
-        let ink = Stroke::plain(INK, 0.25);
-        diagram.line(vec![[left, 3.8], [end, 3.8]], ink);
-        for x in [left, end] {
-            diagram.line(vec![[x, 3.3], [x, 4.3]], ink);
-        }
-    }
-    diagram.label([left - GAP, 1.6], told_difference, Anchor::Left);
+    diagram.bracket(difference, width.mm() - 1.0);
     let bars = bars(&mut diagram, &means, &cliques);
     let first = AXIS + BAR * (bars as f64 + 1.0) + 1.6;
     for (i, text) in told.into_iter().enumerate() {
         let is_left = i < half;
         let row = if is_left { i } else { count - 1 - i };
-        let (x, y) = (diagram.x(means[i]), first + ROW * row as f64);
         let (end, anchor) = if is_left {
             (left - GAP, Anchor::Right)
         } else {
             (width.mm() - right + GAP, Anchor::Left)
         };
-        let stroke = Stroke { width: 0.25, marker: None, ..looks.stroke(&labels[i]) };
-        diagram.line(vec![[x, AXIS], [x, y], [end, y]], stroke);
-        let point = Stroke { hollow: false, ..looks.stroke(&labels[i]) };
-        diagram.marks.push(Mark::Points {
-            name: String::new(),
-            stroke: point,
-            points: vec![[x, AXIS]],
-        });
-        diagram.label([end, y], text, anchor);
+        let end = [end, first + ROW * row as f64];
+        diagram.optimiser(means[i], end, looks.stroke(&labels[i]));
+        diagram.label(end, text, anchor);
     }
     let height = first + ROW * half as f64 - 0.5 * ROW;
     let axis = |length: f64| Axis::linear("", [0.0, length], 0.0);
