@@ -14,6 +14,7 @@ use std::collections::HashSet;
 use serde::Serialize;
 
 use super::Analysis;
+use crate::experiment::Instance;
 use words::plural;
 
 /// One thing that an experiment has to say.
@@ -42,7 +43,9 @@ impl Analysis<'_> {
         let groups: HashSet<&str> =
             self.plan.instances.iter().map(|instance| instance.group.as_str()).collect();
         match self.plan.optimisers.len() {
-            1 if groups.len() > 1 => findings.extend(sweep::finding(self)),
+            1 if groups.len() > 1 && self.plan.instances.iter().all(Instance::is_task) => {
+                findings.extend(sweep::finding(self))
+            }
             _ => findings.extend(comparison::findings(self)),
         }
         findings.extend(quality::findings(self));
