@@ -82,7 +82,7 @@ mod tests {
         let targets = targets(&plan, &runs);
         let analysis = Analysis::new(&plan, &runs, &targets);
         let frame = blocks_table(&analysis, analysis.blocks.as_ref().unwrap()).unwrap().frame;
-        assert_eq!(frame.get_column_names_str(), ["block_", "block", "de"]);
+        assert_eq!(frame.get_column_names(), ["block_", "block", "de"]);
         assert_eq!(frame.column("block_").unwrap().str().unwrap().get(1), Some("seed 2"));
         assert_eq!(frame.column("block").unwrap().f64().unwrap().get(1), Some(2.0));
     }

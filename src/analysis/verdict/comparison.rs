@@ -106,13 +106,13 @@ impl<'a> Standings<'a> {
             };
             let s = if winners.len() == 1 { "s" } else { "" };
             if alike.is_empty() {
-                return format!("{names} differ{s} significantly from every other");
+                let rest = if first.len() == 1 { "every other" } else { "the rest" };
+                return format!("{names} differ{s} significantly from {rest}");
             }
             let alike = any_of(&self.names(alike.iter().copied()), others.len());
             format!("{names} cannot be told from {alike} at the 5 % level")
         });
-        let of_the_rest = if sides.len() > 1 { "Of those behind: " } else { "" };
-        format!("{of_the_rest}{}.", told.collect::<Vec<_>>().join("; "))
+        format!("{}.", told.collect::<Vec<_>>().join("; "))
     }
 
     /// The first, those together that the tests tell from the same others; with these, and with those they are not

@@ -7,6 +7,8 @@ mod running_time;
 mod sweep;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod truths;
 mod words;
 
 use std::collections::HashSet;
@@ -44,7 +46,7 @@ impl Analysis<'_> {
             self.plan.instances.iter().map(|instance| instance.group.as_str()).collect();
         match self.plan.optimisers.len() {
             1 if groups.len() > 1 && self.plan.instances.iter().all(Instance::is_task) => {
-                findings.extend(sweep::finding(self))
+                findings.extend(sweep::finding(self));
             }
             _ => findings.extend(comparison::findings(self)),
         }

@@ -70,7 +70,7 @@ fn many_tasks(best: &[OnTask<'_>], tasks: usize) -> String {
         0 => format!("No best cost is known of the {all}."),
         known => {
             let known = plural(known, "instance");
-            let beaten = if beaten > 0 {
+            let more = if beaten > 0 {
                 format!(", and beaten by more on {beaten}")
             } else {
                 String::new()
@@ -82,7 +82,7 @@ fn many_tasks(best: &[OnTask<'_>], tasks: usize) -> String {
                 String::new()
             };
             format!(
-                "The best known cost was reached within 10⁻⁶ on {reached} of the {known} that have one{beaten}{missed}."
+                "The best known cost was reached within 10⁻⁶ on {reached} of the {known} that have one{more}{missed}."
             )
         }
     };

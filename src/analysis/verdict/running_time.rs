@@ -70,23 +70,17 @@ fn many(
     let each = if target.starts_with("target") { " of each instance" } else { "" };
     let count = |o: usize| times[o].iter().filter(|time| time.is_finite()).count();
     let others: Vec<usize> = (0..times.len()).filter(|&o| o != winner).collect();
-    let counts = others.iter().map(|&o| count(o));
-    let by = if others.len() <= MOST_TOLD {
-        let told = others.iter().map(|&o| format!("on {} by {}", count(o), analysis.optimiser(o)));
-        told.collect::<Vec<_>>()
+    let all = times[winner].len();
+    let mut by = vec![format!("on {} of {all} instances by {name}", count(winner))];
+    if others.len() <= MOST_TOLD {
+        by.extend(others.iter().map(|&o| format!("on {} by {}", count(o), analysis.optimiser(o))));
     } else {
-        let (least, most) = (counts.clone().min().unwrap_or(0), counts.max().unwrap_or(0));
-        vec![format!("on {least} to {most} by the {} others", others.len())]
-    };
-    let by: Vec<String> =
-        [format!("on {} of {} instances by {name}", count(winner), times[winner].len())]
-            .into_iter()
-            .chain(by)
-            .collect();
-    let mut told = format!(
-        "The hardest target that {name} reached, {target}{each}, was reached {}.",
-        list(&by)
-    );
+        let most = others.iter().map(|&o| count(o)).max().unwrap_or(0);
+        by.push(format!("on {most} at most by the {} others", others.len()));
+    }
+    let by = list(&by);
+    let mut told =
+        format!("The hardest target that {name} reached, {target}{each}, was reached {by}.");
     let factor = |o: usize| {
         let both = times[winner].iter().zip(&times[o]).filter(|(a, b)| a.max(**b).is_finite());
         let (own, its) = both.fold((0.0, 0.0), |sums, (a, b)| (sums.0 + a, sums.1 + b));
@@ -94,8 +88,10 @@ fn many(
     };
     let compared: Vec<(usize, f64)> = others.iter().filter_map(|&o| factor(o)).collect();
     if !compared.is_empty() {
-        told += " In expected running time, summed over the instances where both did, ";
-        told += &format!("{} as {name}.", factors(analysis, &compared));
+        told = format!(
+            "{told} In expected running time, summed over the instances where both did, {} as {name}.",
+            factors(analysis, &compared)
+        );
     }
     (told, compared.iter().map(|(o, _)| *o).collect())
 }
