@@ -24,12 +24,14 @@ pub(super) fn told(analysis: &Analysis<'_>, blocks: &Blocks, winner: usize) -> O
         .filter(|(_, times)| reached(times) > 0)
         .min_by(|a, b| reached(&a.1).cmp(&reached(&b.1)).then(value(a.0).total_cmp(&value(b.0))));
     let Some((k, times)) = hardest else {
-        return (count > 0).then(|| format!("No run of {name} reached a target."));
+        let which =
+            if have_same_count(analysis, instances) { "" } else { " that every instance has" };
+        return (count > 0).then(|| format!("No run of {name} reached a target{which}."));
     };
     let target = analysis.targets.label(k, analysis.plan.cost_symbol(), instances.iter().copied());
     let (told, compared) = match instances.as_slice() {
         [only] => one(analysis, &target, *only, winner, &times),
-        _ => many(analysis, &target, winner, &times),
+        _ => many(analysis, blocks, &target, winner, &times),
     };
     Some(told + &derivatives(analysis, compared.into_iter().chain([winner])))
 }
@@ -62,6 +64,7 @@ fn one(
 /// is compared.
 fn many(
     analysis: &Analysis<'_>,
+    blocks: &Blocks,
     target: &str,
     winner: usize,
     times: &Times,
@@ -79,8 +82,12 @@ fn many(
         by.push(format!("on {most} at most by the {} others", others.len()));
     }
     let by = list(&by);
-    let mut told =
-        format!("The hardest target that {name} reached, {target}{each}, was reached {by}.");
+    let which = if have_same_count(analysis, &blocks.instances) {
+        "The hardest target"
+    } else {
+        "Of the targets that every instance has, the hardest"
+    };
+    let mut told = format!("{which} that {name} reached, {target}{each}, was reached {by}.");
     let factor = |o: usize| {
         let both = times[winner].iter().zip(&times[o]).filter(|(a, b)| a.max(**b).is_finite());
         let (own, its) = both.fold((0.0, 0.0), |sums, (a, b)| (sums.0 + a, sums.1 + b));
@@ -94,6 +101,12 @@ fn many(
         );
     }
     (told, compared.iter().map(|(o, _)| *o).collect())
+}
+
+/// Whether some instances have as many targets each.
+fn have_same_count(analysis: &Analysis<'_>, instances: &[usize]) -> bool {
+    let count = |i: usize| analysis.targets.values[i].len();
+    instances.windows(2).all(|pair| count(pair[0]) == count(pair[1]))
 }
 
 /// Who never reached it, and in how many runs.
