@@ -166,20 +166,25 @@ impl<'a> Standings<'a> {
             let rank = |o| self.rank(o);
             format!("The mean rank of {named} is {}, {}.", rank(winner), against(&rank))
         }];
-        if self.blocks.unit == Unit::Instances {
-            let is_lowest = |row: &&Vec<f64>| row.iter().all(|&cost| row[winner] <= cost);
-            let won = self.blocks.costs.iter().filter(is_lowest).count();
-            let all = plural(self.blocks.costs.len(), "instance");
-            told.push(format!(
-                "The median of {named} is the lowest, alone or with others, on {won} of {all}."
-            ));
-        }
+        told.extend(self.wins(winner));
         told.push(format!(
             "A run of {named} ends lower than one of {} with probability {:.2} (A12, ties count half).",
             self.name(second),
             self.blocks.effect(winner, second)
         ));
         told.join(" ")
+    }
+
+    /// On how many instances nobody's median is lower; none where the blocks are seeds.
+    fn wins(&self, winner: usize) -> Option<String> {
+        let is_lowest = |row: &&Vec<f64>| {
+            row[winner].is_finite() && row.iter().all(|&cost| row[winner] <= cost)
+        };
+        let won = self.blocks.costs.iter().filter(is_lowest).count();
+        let (name, all) = (self.name(winner), plural(self.blocks.costs.len(), "instance"));
+        let told =
+            format!("The median of {name} is the lowest, alone or with others, on {won} of {all}.");
+        (self.blocks.unit == Unit::Instances).then_some(told)
     }
 
     fn significance(&self) -> String {

@@ -27,6 +27,21 @@ fn running_times_compare_where_both_reach_the_target() {
     assert!(!by.contains("median cost"), "{by}");
 }
 
+/// One of two instances has a second target, which does not count.
+#[test]
+fn running_times_keep_to_targets_of_all_instances() {
+    let plan = plan(
+        "seeds = 1\nbudget = { evaluations = 100 }\n[functions]\nname = ['sphere']\ndimension = [2]\n\
+         instances = 2\n[targets]\n'sphere dimension=2 instance=1' = [1.0]\n\
+         'sphere dimension=2 instance=2' = [2.0, 0.1]\n[[optimiser]]\nde = {}\n[[optimiser]]\nrandom = {}\n",
+    );
+    let told = findings(&plan, &runs(&plan, |run| vec![(20, 0.01 + run.optimiser as f64)]));
+    let by = answer(&told, "By how much?");
+    let part = "Of the targets that every instance has, the hardest that de reached, target 1 of each instance, was \
+                reached on 2 of 2 instances by de and on 1 by random.";
+    assert!(by.contains(part), "{by}");
+}
+
 #[test]
 fn shifts_of_a_function_are_not_independent_but_functions_are() {
     let significance = |names: &str| {
