@@ -9,6 +9,24 @@ use crate::experiment::Plan;
 /// Level of the tests.
 pub const ALPHA: f64 = 0.05;
 
+/// What a block is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Unit {
+    /// An instance, with the median over its seeds.
+    Instances,
+    /// A seed of the only instance.
+    Seeds,
+}
+
+impl Unit {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Instances => "instances",
+            Self::Seeds => "seeds",
+        }
+    }
+}
+
 /// What the tests stand on: final costs of all optimisers, block by block.
 #[derive(Debug)]
 pub(super) struct Blocks {
@@ -17,7 +35,9 @@ pub(super) struct Blocks {
     /// What to call each block.
     pub(super) names: Vec<String>,
     /// What a block is.
-    pub(super) unit: &'static str,
+    pub(super) unit: Unit,
+    /// The instances that they come from.
+    pub(super) instances: Vec<usize>,
     /// What Friedman's test says.
     pub(super) friedman: Friedman,
     /// All pairs of optimisers.
@@ -43,26 +63,27 @@ impl Blocks {
         let whole: Vec<usize> = problems.iter().copied().filter(is_whole).collect();
         let (unit, costs, names) = if let (&[_], &[only]) = (&problems[..], &whole[..]) {
             let (seeds, costs) = by_seed(&cells[only]);
-            ("seeds", costs, seeds.iter().map(|seed| format!("seed {seed}")).collect())
+            (Unit::Seeds, costs, seeds.iter().map(|seed| format!("seed {seed}")).collect())
         } else {
             let costs = |cell: &Vec<(u64, f64)>| cell.iter().map(|run| run.1).collect();
             let row = |&i: &usize| cells[i].iter().map(|cell| median(costs(cell))).collect();
             let name = |&i: &usize| plan.instances[i].label.clone();
-            ("instances", whole.iter().map(row).collect(), whole.iter().map(name).collect())
+            (Unit::Instances, whole.iter().map(row).collect(), whole.iter().map(name).collect())
         };
         let pairs = pairs(&costs, &whole.iter().map(|&i| &cells[i][..]).collect::<Vec<_>>());
         let is_uneven = plan.is_uneven();
-        Some(Self { friedman: friedman(&costs)?, costs, names, unit, pairs, is_uneven })
+        let friedman = friedman(&costs)?;
+        Some(Self { friedman, costs, names, unit, instances: whole, pairs, is_uneven })
     }
 
     /// What the tests stand on, in words.
     pub(super) fn told(&self) -> String {
         let n = self.costs.len();
         let mut told = match self.unit {
-            "seeds" => format!(
+            Unit::Seeds => format!(
                 "Blocks are the {n} seeds of the only instance, so it says nothing about other instances."
             ),
-            _ => format!(
+            Unit::Instances => format!(
                 "Blocks are {n} instances, those with the largest budget, each with the median cost over its seeds."
             ),
         };
@@ -88,6 +109,11 @@ impl Blocks {
         let mut order: Vec<usize> = (0..ranks.len()).collect();
         order.sort_by(|&a, &b| ranks[a].total_cmp(&ranks[b]));
         order
+    }
+
+    /// The median cost of an optimiser over the blocks.
+    pub(super) fn median(&self, optimiser: usize) -> f64 {
+        median(self.costs.iter().map(|row| row[optimiser]).collect())
     }
 
     /// Whether two optimisers differ significantly.

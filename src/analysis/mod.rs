@@ -14,6 +14,7 @@ mod targets;
 mod ties;
 mod verdict;
 
+pub use blocks::ALPHA;
 pub use format::{csv, latex, markdown, render};
 pub use runs::{Improvement, Run, best_run, load};
 pub use standing::{Failure, Standing, Tally, standing};

@@ -4,10 +4,10 @@ use super::Run;
 use crate::experiment::Plan;
 
 /// Costs of motions that differ by less than this share are the same: that is how far searches go.
-const SAME_MOTION: f64 = 1e-6;
+pub(super) const SAME_MOTION: f64 = 1e-6;
 /// Costs of other problems that differ by less are the same: COCO's final precision,
 /// doi 10.1080/10556788.2020.1808977.
-const SAME: f64 = 1e-8;
+pub(super) const SAME: f64 = 1e-8;
 
 /// The certified costs of the runs, in their order; on each instance a cost that exceeds a lower one by no
 /// more than rounding and the ends of searches is taken for that one. Without that, ranks would tell

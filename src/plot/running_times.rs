@@ -11,7 +11,7 @@ use super::marks::{Line, Mark};
 use super::panel::{MARGIN, Panel};
 use super::style::Stroke;
 
-/// Share of pairs of instance and target reached against evaluations, from the table
+/// Share of pairs of run and target reached against evaluations, from the table
 /// `running-time-distribution`; thin lines go on with simulated restarts. Of too many groups only all together are drawn.
 pub fn running_time_distribution(
     frame: &DataFrame,

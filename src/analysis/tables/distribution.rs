@@ -59,7 +59,7 @@ pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
         "share with restarts" =>
             rows().map(|((_, t), at)| share(&t.restarted, at)).collect::<Vec<_>>(),
     )?;
-    let caption = "Share of pairs of instance and target reached within so many evaluations; 51 targets from 10² to \
+    let caption = "Share of pairs of run and target reached within so many evaluations; 51 targets from 10² to \
         10⁻⁸ above the least cost known or found. With restarts: a run that fails is followed by others, drawn with \
         replacement, until one succeeds.";
     Ok(Table::curve("running-time-distribution", caption, frame))

@@ -12,7 +12,7 @@ pub(super) fn friedman_table(blocks: &Blocks) -> PolarsResult<Table> {
     let (n, k) = (blocks.costs.len(), blocks.friedman.mean_ranks.len());
     let frame = df!(
         "blocks" => [n as u64],
-        "block" => [blocks.unit],
+        "block" => [blocks.unit.name()],
         "optimisers" => [k as u64],
         "χ²" => [chi_square],
         "p" => [p],
@@ -53,11 +53,37 @@ pub(super) fn table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsResult<Ta
 
 /// The costs that the tests compare, one line a block.
 pub(super) fn blocks_table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsResult<Table> {
-    let mut frame = df!("block" => &blocks.names)?;
-    for i in 0..analysis.plan.optimisers.len() {
-        let costs: Vec<f64> = blocks.costs.iter().map(|row| row[i]).collect();
-        frame.with_column(Column::new(analysis.optimiser(i).into(), costs))?;
+    let optimisers = 0..analysis.plan.optimisers.len();
+    let mut block = "block".to_owned();
+    while optimisers.clone().any(|o| analysis.optimiser(o) == block) {
+        block.push('_');
     }
+    let costs = |o: usize| blocks.costs.iter().map(|row| row[o]).collect::<Vec<f64>>();
+    let columns: Vec<Column> =
+        optimisers.map(|o| Column::new(analysis.optimiser(o).into(), costs(o))).collect();
+    let frame = df!(block => &blocks.names)?.hstack(&columns)?;
     let caption = format!("The costs that the tests compare. {}", blocks.told());
     Ok(Table::new("blocks", caption, frame))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::handmade::{plan, runs};
+    use crate::analysis::targets;
+
+    #[test]
+    fn an_optimiser_called_block_leaves_the_blocks_their_names() {
+        let plan = plan(
+            "seeds = 2\nbudget = { evaluations = 100 }\n[functions]\nname = ['sphere']\n\
+             [[optimiser]]\nlabel = 'block'\nrandom = {}\n[[optimiser]]\nde = {}\n",
+        );
+        let runs = runs(&plan, |run| vec![(1, run.seed as f64)]);
+        let targets = targets(&plan, &runs);
+        let analysis = Analysis::new(&plan, &runs, &targets);
+        let frame = blocks_table(&analysis, analysis.blocks.as_ref().unwrap()).unwrap().frame;
+        assert_eq!(frame.get_column_names(), ["block_", "block", "de"]);
+        assert_eq!(frame.column("block_").unwrap().str().unwrap().get(1), Some("seed 2"));
+        assert_eq!(frame.column("block").unwrap().f64().unwrap().get(1), Some(2.0));
+    }
 }

@@ -1,10 +1,17 @@
 //! Who won, by how much, and whether that is chance.
 
-use super::words::{list, number, p_value, plural, some_of};
+use std::collections::HashSet;
+
+use super::words::{any_of, list, number, p_value, plural, some_of};
 use super::{Finding, running_time};
-use crate::analysis::blocks::{ALPHA, Blocks};
-use crate::analysis::statistics::median;
-use crate::analysis::{Analysis, Run};
+use crate::analysis::Analysis;
+use crate::analysis::blocks::{ALPHA, Blocks, Unit};
+
+/// How a sentence on pairs begins.
+const WILCOXON: &str = "By Wilcoxon's test with Holm's correction at the 5 % level";
+
+/// Some of the level winners, the others that they differ from, and those that they do not.
+type Side = (Vec<usize>, Vec<usize>, Vec<usize>);
 
 /// The optimisers in their order.
 struct Standings<'a> {
@@ -58,7 +65,7 @@ impl<'a> Standings<'a> {
 
     /// The number of blocks, and what they are.
     fn blocks_told(&self) -> String {
-        format!("{} {}", self.blocks.costs.len(), self.blocks.unit)
+        format!("{} {}", self.blocks.costs.len(), self.blocks.unit.name())
     }
 
     /// Whether the blocks are too few for any pair to differ significantly.
@@ -90,17 +97,37 @@ impl<'a> Standings<'a> {
             let over = self.blocks_told();
             return format!("Pair by pair, {over} cannot show that this is more than chance.");
         }
-        let is_alike = |&o: &usize| first.iter().any(|&f| !self.blocks.differ(f, o));
-        let alike = self.names(others.iter().copied().filter(is_alike));
-        match (first.len(), alike.len()) {
-            (1, 0) => "It differs significantly from every other.".to_owned(),
-            (_, 0) => "They differ significantly from every other.".to_owned(),
-            (n, _) => format!(
-                "{} cannot be told from {} at the 5 % level.",
-                if n == 1 { "It" } else { "They" },
-                some_of(&alike, others.len())
-            ),
+        let sides = self.sides(first, others);
+        let told = sides.iter().map(|(winners, _, alike)| {
+            let names = match (sides.len(), winners.len()) {
+                (1, 1) => "It".to_owned(),
+                (1, _) => "They".to_owned(),
+                _ => list(&self.names(winners.iter().copied())),
+            };
+            let s = if winners.len() == 1 { "s" } else { "" };
+            if alike.is_empty() {
+                let rest = if first.len() == 1 { "every other" } else { "the rest" };
+                return format!("{names} differ{s} significantly from {rest}");
+            }
+            let alike = any_of(&self.names(alike.iter().copied()), others.len());
+            format!("{names} cannot be told from {alike} at the 5 % level")
+        });
+        format!("{}.", told.collect::<Vec<_>>().join("; "))
+    }
+
+    /// The first, those together that the tests tell from the same others; with these, and with those they are not
+    /// told from.
+    fn sides(&self, first: &[usize], others: &[usize]) -> Vec<Side> {
+        let mut sides: Vec<Side> = Vec::new();
+        for &winner in first {
+            let (differ, alike): (Vec<usize>, Vec<usize>) =
+                others.iter().partition(|&&other| self.blocks.differ(winner, other));
+            match sides.iter_mut().find(|side| side.1 == differ) {
+                Some(side) => side.0.push(winner),
+                None => sides.push((vec![winner], differ, alike)),
+            }
         }
+        sides
     }
 
     fn by_how_much(&self) -> String {
@@ -109,7 +136,7 @@ impl<'a> Standings<'a> {
             (Some(&second), Some(&last)) => self.costs(winner, second, last),
             _ => "Not at all in final costs.".to_owned(),
         };
-        if let Some(times) = running_time::told(self.analysis, winner) {
+        if let Some(times) = running_time::told(self.analysis, self.blocks, winner) {
             told = told + " " + &times;
         }
         told
@@ -130,35 +157,34 @@ impl<'a> Standings<'a> {
             }
         };
         let symbol = self.analysis.plan.cost_symbol();
-        let instances = &self.analysis.plan.instances;
         let named = self.name(winner);
-        let mut told = vec![if instances.iter().all(|i| i.group == instances[0].group) {
-            let cost = |o| number(self.median_cost(o));
+        let mut told = vec![if self.blocks.unit == Unit::Seeds {
+            let cost = |o| number(self.blocks.median(o));
             let own = cost(winner);
             format!("The median cost of {named} is {symbol} {own}, {}.", against(&cost))
         } else {
             let rank = |o| self.rank(o);
             format!("The mean rank of {named} is {}, {}.", rank(winner), against(&rank))
         }];
-        if self.blocks.unit == "instances" {
-            let lowest = |row: &&Vec<f64>| row.iter().all(|&cost| row[winner] <= cost);
-            let won = self.blocks.costs.iter().filter(lowest).count();
-            let all = plural(self.blocks.costs.len(), "instance");
-            told.push(format!(
-                "Its median is the lowest, alone or with others, on {won} of {all}."
-            ));
-        }
+        told.extend(self.wins(winner));
         told.push(format!(
-            "A run of it ends lower than one of {} with probability {:.2} (A12, ties count half).",
+            "A run of {named} ends lower than one of {} with probability {:.2} (A12, ties count half).",
             self.name(second),
             self.blocks.effect(winner, second)
         ));
         told.join(" ")
     }
 
-    fn median_cost(&self, optimiser: usize) -> f64 {
-        let own = |run: &&Run| run.optimiser == optimiser;
-        median(self.analysis.runs.iter().filter(own).map(|run| run.cost).collect())
+    /// On how many instances nobody's median is lower; none where the blocks are seeds.
+    fn wins(&self, winner: usize) -> Option<String> {
+        let is_lowest = |row: &&Vec<f64>| {
+            row[winner].is_finite() && row.iter().all(|&cost| row[winner] <= cost)
+        };
+        let won = self.blocks.costs.iter().filter(is_lowest).count();
+        let (name, all) = (self.name(winner), plural(self.blocks.costs.len(), "instance"));
+        let told =
+            format!("The median of {name} is the lowest, alone or with others, on {won} of {all}.");
+        (self.blocks.unit == Unit::Instances).then_some(told)
     }
 
     fn significance(&self) -> String {
@@ -170,31 +196,41 @@ impl<'a> Standings<'a> {
             if self.is_hopeless() { self.hopeless() } else { self.pairs_told() },
             self.blocks_mean(),
         ];
-        if self.blocks.unit == "instances" && self.varies_settings() {
-            told.push(
-                "Settings of one task are not independent tasks, so p-values are smaller than they should be."
-                    .to_owned(),
-            );
-        }
+        told.extend(self.dependence().map(str::to_owned));
         told.join(" ")
     }
 
     fn blocks_mean(&self) -> String {
         match (self.blocks.unit, self.analysis.plan.cost_symbol()) {
-            ("seeds", "J") => {
+            (Unit::Seeds, "J") => {
                 "Blocks are the seeds of one task, which says nothing about other tasks.".to_owned()
             }
-            ("seeds", _) => {
+            (Unit::Seeds, _) => {
                 "Blocks are the seeds of one instance, which says nothing about others.".to_owned()
             }
-            _ => format!("Blocks are {}, each with the median over its seeds.", self.blocks_told()),
+            (Unit::Instances, _) => {
+                format!("Blocks are {}, each with the median over its seeds.", self.blocks_told())
+            }
         }
     }
 
-    /// Whether tasks differ in more than their poses.
-    fn varies_settings(&self) -> bool {
-        let tasks = || self.analysis.plan.instances.iter().filter(|instance| instance.is_task());
-        tasks().zip(tasks().skip(1)).any(|(a, b)| a.group != b.group)
+    /// What makes blocks alike: tasks that differ in more than their poses, and functions in shift or dimension alone.
+    fn dependence(&self) -> Option<&'static str> {
+        let instances = self.blocks.instances.iter().map(|&i| &self.analysis.plan.instances[i]);
+        let (tasks, functions): (Vec<_>, Vec<_>) = instances.partition(|i| i.is_task());
+        let names: HashSet<&str> = functions.iter().map(|i| i.subject.name()).collect();
+        if tasks.windows(2).any(|pair| pair[0].group != pair[1].group) {
+            Some(
+                "Settings of one task are not independent tasks, so p-values are smaller than they should be.",
+            )
+        } else if names.len() < functions.len() {
+            Some(
+                "Shifts and dimensions of one function are not independent functions, so p-values are smaller than they \
+                 should be.",
+            )
+        } else {
+            None
+        }
     }
 
     fn hopeless(&self) -> String {
@@ -210,21 +246,39 @@ impl<'a> Standings<'a> {
     }
 
     fn pairs_told(&self) -> String {
-        let winner = self.order[0];
-        let others = &self.order[1..];
-        let (differ, alike): (Vec<usize>, Vec<usize>) =
-            others.iter().partition(|&&other| self.blocks.differ(winner, other));
-        let told = |optimisers: Vec<usize>| some_of(&self.names(optimisers), others.len());
-        let verb = match (differ.is_empty(), alike.is_empty()) {
-            (false, true) => format!("differs from {}", told(differ)),
-            (true, _) => format!("does not differ significantly from {}", told(alike)),
-            (false, false) => {
-                format!("differs from {} and not significantly from {}", told(differ), told(alike))
-            }
+        let (first, others) = self.order.split_at(self.level);
+        let (first, others) = match (first, others) {
+            ([_], _) | (_, [_, ..]) => (first, others),
+            _ => return self.level_pairs_told(),
         };
-        format!(
-            "By Wilcoxon's test with Holm's correction at the 5 % level {} {verb}.",
-            self.name(winner)
-        )
+        let told = self.sides(first, others).into_iter().map(|(winners, differ, alike)| {
+            let (s, does) = if winners.len() == 1 { ("s", "does") } else { ("", "do") };
+            let verb = match (differ.is_empty(), alike.is_empty()) {
+                (false, true) => {
+                    format!("differ{s} from {}", some_of(&self.names(differ), others.len()))
+                }
+                (true, _) => format!(
+                    "{does} not differ significantly from {}",
+                    any_of(&self.names(alike), others.len())
+                ),
+                (false, false) => format!(
+                    "differ{s} from {} and not significantly from {}",
+                    some_of(&self.names(differ), others.len()),
+                    any_of(&self.names(alike), others.len())
+                ),
+            };
+            format!("{} {verb}", list(&self.names(winners)))
+        });
+        format!("{WILCOXON} {}.", told.collect::<Vec<_>>().join("; "))
+    }
+
+    /// Where all are level.
+    fn level_pairs_told(&self) -> String {
+        let pairs = &self.blocks.pairs;
+        let differ = pairs.iter().filter(|p| self.blocks.differ(p.first, p.second)).count();
+        match differ {
+            0 => format!("{WILCOXON} no pair differs significantly."),
+            n => format!("{WILCOXON} {n} of {} differ.", plural(pairs.len(), "pair")),
+        }
     }
 }

@@ -7,6 +7,8 @@ mod running_time;
 mod sweep;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod truths;
 mod words;
 
 use std::collections::HashSet;
@@ -14,6 +16,7 @@ use std::collections::HashSet;
 use serde::Serialize;
 
 use super::Analysis;
+use crate::experiment::Instance;
 use words::plural;
 
 /// One thing that an experiment has to say.
@@ -42,7 +45,9 @@ impl Analysis<'_> {
         let groups: HashSet<&str> =
             self.plan.instances.iter().map(|instance| instance.group.as_str()).collect();
         match self.plan.optimisers.len() {
-            1 if groups.len() > 1 => findings.extend(sweep::finding(self)),
+            1 if groups.len() > 1 && self.plan.instances.iter().all(Instance::is_task) => {
+                findings.extend(sweep::finding(self));
+            }
             _ => findings.extend(comparison::findings(self)),
         }
         findings.extend(quality::findings(self));

@@ -1,19 +1,20 @@
 //! How good the best is.
 
+use std::collections::BTreeSet;
+
 use super::Finding;
 use super::words::{list, number, off_the_goal, plural, span};
+use crate::analysis::ties::{SAME, SAME_MOTION};
 use crate::analysis::{Analysis, Run};
 use crate::experiment::Instance;
 use crate::problem::{BestKnown, Reorientation};
 
 const QUESTION: &str = "How good is it?";
 
-/// By which share of it a cost may exceed the best known and be the same.
-const REACHED: f64 = 1e-6;
 /// Residuals below count as none \[°\].
 const AT_GOAL_DEG: f64 = 0.01;
-/// COCO's final precision, doi 10.1080/10556788.2020.1808977.
-const SOLVED: f64 = 1e-8;
+/// Most optimisers that are named as the best.
+const MOST_NAMES: usize = 5;
 
 /// A best run with the task it is on.
 type OnTask<'a> = (&'a Run, &'a Reorientation);
@@ -37,11 +38,24 @@ fn one_task(analysis: &Analysis<'_>, (run, problem): OnTask<'_>) -> String {
         .map_or_else(|| "no best is known".to_owned(), |known| known.compared_with(run.cost));
     format!(
         "The best motion is by {}: J {:.6} ({known}), {} s, and the base ends {}.",
-        analysis.optimiser(run.optimiser),
+        winners(analysis, run),
         run.cost,
         number(run.duration),
         off_the_goal(run.residual_deg)
     )
+}
+
+/// Whose runs end as low as the lowest of its instance.
+fn winners(analysis: &Analysis<'_>, lowest: &Run) -> String {
+    let is_level = |run: &&Run| run.cost - lowest.cost <= SAME_MOTION * lowest.cost.abs();
+    let on_instance = analysis.runs.iter().filter(|run| run.instance == lowest.instance);
+    let level: BTreeSet<usize> = on_instance.filter(is_level).map(|run| run.optimiser).collect();
+    let names: Vec<&str> = level.iter().map(|&o| analysis.optimiser(o)).collect();
+    match names.len() {
+        1 => names[0].to_owned(),
+        n if n > MOST_NAMES => format!("{n} optimisers alike"),
+        _ => format!("{} alike", list(&names)),
+    }
 }
 
 fn many_tasks(best: &[OnTask<'_>], tasks: usize) -> String {
@@ -49,23 +63,26 @@ fn many_tasks(best: &[OnTask<'_>], tasks: usize) -> String {
         BestKnown::of(problem).map(|known| (run.cost - known.j) / known.j)
     };
     let gaps: Vec<f64> = best.iter().filter_map(gap).collect();
-    let reached = gaps.iter().filter(|&&gap| gap <= REACHED).count();
-    let beaten = gaps.iter().filter(|&&gap| gap < -REACHED).count();
+    let reached = gaps.iter().filter(|&&gap| gap.abs() <= SAME_MOTION).count();
+    let beaten = gaps.iter().filter(|&&gap| gap < -SAME_MOTION).count();
     let all = plural(tasks, "instance");
     let told = match gaps.len() {
         0 => format!("No best cost is known of the {all}."),
         known => {
             let known = plural(known, "instance");
-            let beaten =
-                if beaten > 0 { format!(", and beaten on {beaten}") } else { String::new() };
+            let more = if beaten > 0 {
+                format!(", and beaten by more on {beaten}")
+            } else {
+                String::new()
+            };
             let furthest = 100.0 * gaps.iter().copied().fold(0.0, f64::max);
-            let missed = if reached < gaps.len() {
+            let missed = if reached + beaten < gaps.len() {
                 format!("; elsewhere the best is up to {} % above", number(furthest))
             } else {
                 String::new()
             };
             format!(
-                "The best known cost was reached within 10⁻⁶ on {reached} of the {known} that have one{beaten}{missed}."
+                "The best known cost was reached within 10⁻⁶ on {reached} of the {known} that have one{more}{missed}."
             )
         }
     };
@@ -89,7 +106,7 @@ fn functions(analysis: &Analysis<'_>) -> Option<String> {
     let mut solved = vec![vec![false; instances.len()]; analysis.plan.optimisers.len()];
     for run in analysis.runs {
         solved[run.optimiser][run.instance] |=
-            least[run.instance].is_some_and(|least| run.cost - least <= SOLVED);
+            least[run.instance].is_some_and(|least| run.cost - least <= SAME);
     }
     let count = |solved: &Vec<bool>| solved.iter().filter(|&&solved| solved).count();
     let mut by_count: Vec<(usize, &str)> =

@@ -20,9 +20,10 @@ pub(super) fn p_value(p: f64) -> String {
     if p < 1e-4 { "p < 0.0001".to_owned() } else { format!("p = {}", significant(p, 3)) }
 }
 
-/// A share in whole percent.
+/// A share in whole percent, in tenths where that would hide on which side of 100 % it is.
 pub(super) fn percent(share: f64) -> String {
-    format!("{:.0} %", 100.0 * share)
+    let percent = 100.0 * share;
+    if percent.round() == 100.0 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
 }
 
 /// How far the base ends off the goal.
@@ -52,10 +53,26 @@ pub(super) fn list<T: AsRef<str>>(names: &[T]) -> String {
 /// Most names of a sentence.
 const MOST_NAMES: usize = 5;
 
-/// Some names of a number of others, or how many they are.
+/// Some names of a number of others, or how many they are: "differs from both others".
 pub(super) fn some_of(names: &[&str], others: usize) -> String {
     match names.len() {
+        2 if others == 2 => "both others".to_owned(),
         n if n == others && n > 1 => format!("all {n} others"),
+        _ => few_of(names, others),
+    }
+}
+
+/// Some names of a number of others, after a negation: "does not differ from either of the others".
+pub(super) fn any_of(names: &[&str], others: usize) -> String {
+    match names.len() {
+        2 if others == 2 => "either of the others".to_owned(),
+        n if n == others && n > 1 => format!("any of the {n} others"),
+        _ => few_of(names, others),
+    }
+}
+
+fn few_of(names: &[&str], others: usize) -> String {
+    match names.len() {
         n if n > MOST_NAMES => format!("{n} of the {others} others"),
         _ => list(names),
     }
@@ -82,6 +99,10 @@ mod tests {
         assert_eq!([0.0625, 2e-5].map(p_value), ["p = 0.0625", "p < 0.0001"]);
         assert_eq!(off_the_goal(3e-7), "within 0.001° of the goal");
         assert_eq!(off_the_goal(0.12688), "0.13° off the goal");
+        assert_eq!(
+            [0.992, 0.9988, 1.002, 1.2].map(percent),
+            ["99 %", "99.9 %", "100.2 %", "120 %"]
+        );
         assert_eq!(span(&[2.0, 1.0], " s"), "1.000 s to 2.000 s");
         assert_eq!(span(&[2.0, 2.000_01], " s"), "2.000 s");
     }
@@ -90,7 +111,11 @@ mod tests {
     fn lists_are_sentences() {
         assert_eq!(list(&["a"]), "a");
         assert_eq!(list(&["a", "b", "c"]), "a, b and c");
-        assert_eq!(some_of(&["a", "b"], 2), "all 2 others");
+        assert_eq!(some_of(&["a", "b"], 2), "both others");
+        assert_eq!(some_of(&["a", "b", "c"], 3), "all 3 others");
+        assert_eq!(any_of(&["a", "b"], 2), "either of the others");
+        assert_eq!(any_of(&["a", "b", "c"], 3), "any of the 3 others");
+        assert_eq!(any_of(&["a", "b"], 3), "a and b");
         assert_eq!(some_of(&["a", "b"], 3), "a and b");
         assert_eq!(some_of(&["a", "b", "c", "d", "e", "f"], 9), "6 of the 9 others");
         assert_eq!(plural(1, "run") + &plural(2, "run"), "1 run2 runs");
