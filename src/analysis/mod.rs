@@ -24,7 +24,6 @@ pub use verdict::Finding;
 
 use crate::experiment::Plan;
 use crate::problem::Reorientation;
-pub use blocks::ALPHA;
 use blocks::Blocks;
 use runs::groups;
 

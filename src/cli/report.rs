@@ -4,6 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 use rayon::prelude::*;
+use textwrap::{WordSeparator, WordSplitter};
 
 use super::CliError;
 use super::results::{EXPERIMENT, Results, ResultsFolder};
@@ -93,7 +94,11 @@ pub(super) fn report(
     tell(plan, &best)?;
     let findings = analysis.findings();
     for Finding { question, answer } in &findings {
-        say!("\n{question}\n{}", textwrap::fill(answer, LINE));
+        // Labels are not broken at their hyphens.
+        let line = textwrap::Options::new(LINE)
+            .word_separator(WordSeparator::AsciiSpace)
+            .word_splitter(WordSplitter::NoHyphenation);
+        say!("\n{question}\n{}", textwrap::fill(answer, line));
     }
     let (tables, charts) = tables_and_charts(plan, &analysis, runs.len(), &best)?;
     write_tables(&tables, &folder.join("tables"))?;

@@ -82,7 +82,7 @@ fn many_tasks(best: &[OnTask<'_>], tasks: usize) -> String {
                 String::new()
             };
             format!(
-                "The best known cost was reached within 10⁻⁶ on {reached} of the {known} that have one{more}{missed}."
+                "A best cost is known of {known}; it was reached within 10⁻⁶ on {reached}{more}{missed}."
             )
         }
     };

@@ -174,7 +174,6 @@ fn what_is_beaten_is_not_what_is_reached() {
     runs[1].cost *= 0.9;
     let told = findings(&plan, &runs);
     let good = answer(&told, "How good is it?");
-    let part =
-        "reached within 10⁻⁶ on 1 of the 2 instances that have one, and beaten by more on 1.";
+    let part = "of 2 instances; it was reached within 10⁻⁶ on 1, and beaten by more on 1.";
     assert!(good.contains(part), "{good}");
 }
