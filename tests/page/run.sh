@@ -10,8 +10,12 @@ cd "$here/../.."
 target=${CARGO_TARGET_DIR:-target}
 folder=$target/page
 python=$folder/venv/bin/python
-if ! command -v chromium > /dev/null && [ "$(id -u)" = 0 ]; then
-    apt-get update -qq && apt-get install -qq -y --no-install-recommends chromium > /dev/null
+if ! command -v chromium > /dev/null && [ "$(id -u)" = 0 ] && command -v apt-get > /dev/null; then
+    (apt-get update -qq && apt-get install -qq -y --no-install-recommends chromium fonts-dejavu-core) > /dev/null || true
+fi
+if ! command -v chromium > /dev/null; then
+    echo "skipped: Chromium is not here and cannot be installed"
+    exit
 fi
 [ -x "$python" ] || python3 -m venv "$folder/venv"
 "$python" -m pip install --quiet --disable-pip-version-check -r "$here/requirements.txt"
