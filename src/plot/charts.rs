@@ -46,10 +46,11 @@ pub fn charts(plan: &Plan, tables: &[Table], stored: usize) -> Result<Vec<Chart>
     let looks = Looks::of(&plan.optimisers);
     let notes = notes(plan, stored);
     let mut maker = Maker { plan, tables, looks, notes, charts: Vec::new() };
-    maker.costs()?;
-    maker.times()?;
-    maker.ranks()?;
+    // What a sweep asks comes first.
     maker.sweeps()?;
+    maker.costs()?;
+    maker.ranks()?;
+    maker.times()?;
     Ok(maker.charts)
 }
 
