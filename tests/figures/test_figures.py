@@ -17,7 +17,7 @@ WORDS = {
     "acceleration-sweep": "acceleration", "base-attitude": "pitch", "convergence": "evaluations",
     "critical-difference": "Nemenyi", "data-profiles": "simplex gradients", "effect-sizes": "lower",
     "expected-running-time": "expected", "final-costs": "final", "jerk-sweep": "jerk", "joint-angles": "joint",
-    "joint-derivatives": "jerk", "pareto": "residual", "performance-profiles": "multiple",
+    "joint-derivatives": "jerk", "pareto": "residual", "performance-profiles": "ratio",
     "rate-sweep": "rates", "running-time-distribution": "share", "snapshots": "t = 0.00 s",
     "terms-sweep": "coefficients", "weight-sweep": "weight",
 }
