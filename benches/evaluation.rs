@@ -7,8 +7,9 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use driftless::attitude::net_rotation;
 use driftless::lanes::Width;
 use driftless::momentum::base_twist;
-use driftless::oracle::Rng;
-use driftless::problem::{Composite, Formulated, Formulation, Multipliers, Problem, TaskFile};
+use driftless::reorientation::{Formulated, Formulation, TaskFile};
+use driftless::search::Rng;
+use driftless::search::{Composite, Multipliers, Problem};
 use nalgebra::DVector;
 
 fn evaluation(c: &mut Criterion) {

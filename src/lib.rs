@@ -27,31 +27,10 @@
 //! "Non-Holonomic Path Planning for Space Robots Based on Jerk Constraints", Int. J. Astronaut.
 //! Aeronautical Eng. 8:065; what is misprinted there is said where it matters.
 //!
-//! # The floors
-//!
-//! A module uses only modules on floors below its own.
-//!
-//! | floor | modules |
-//! |---|---|
-//! | 13 | [`cli`]: one file a verb |
-//! | 12 | `report`: the page of an experiment |
-//! | 11 | `plot`: charts; [`export`]: motions, and an experiment's runs, in formats that other tools read |
-//! | 10 | `analysis`: from stored runs to tables |
-//! | 9 | `experiment`: config, instances, plan, runner, store |
-//! | 8 | [`optimiser`]: one file an optimiser |
-//! | 7 | [`oracle`]: budget, counters, best so far, trace |
-//! | 6 | [`problem`]: the reorientation task in its formulations, the best motions known, test functions |
-//! | 5 | [`task`], [`attitude`] |
-//! | 4 | [`momentum`], [`trajectory`], [`posture`] |
-//! | 3 | [`kinematics`], [`so3`] |
-//! | 2 | [`vec3`] |
-//! | 1 | [`lanes`], [`robot`] |
-//! | 0 | [`scalar`], [`input`], [`output`], [`digest`] |
-//!
 //! # Example
 //!
 //! ```
-//! use driftless::problem::{Accuracy, TaskFile};
+//! use driftless::reorientation::{Accuracy, TaskFile};
 //!
 //! let document = TaskFile::paper();
 //! let (problem, _) = TaskFile::read(&document)?.build(&document)?;
@@ -71,21 +50,22 @@ pub mod digest;
 #[cfg(feature = "harness")]
 pub mod experiment;
 pub mod export;
+pub mod functions;
 pub mod input;
 pub mod kinematics;
 pub mod lanes;
 pub mod momentum;
 pub mod optimiser;
-pub mod oracle;
 pub mod output;
 #[cfg(feature = "harness")]
 pub mod plot;
 pub mod posture;
-pub mod problem;
+pub mod reorientation;
 #[cfg(feature = "harness")]
 pub mod report;
 pub mod robot;
 pub mod scalar;
+pub mod search;
 pub mod so3;
 pub mod task;
 pub mod trajectory;

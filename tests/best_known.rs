@@ -2,7 +2,7 @@
 //! called and however it is written.
 
 use driftless::input::Document;
-use driftless::problem::{BestKnown, Reorientation, TaskFile, fingerprint};
+use driftless::reorientation::{BestKnown, Reorientation, TaskFile, fingerprint};
 
 fn problem(text: &str) -> Reorientation {
     let document = Document::embedded("task.toml", text);

@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use driftless::input::Document;
 use driftless::lanes::Width;
-use driftless::oracle::Rng;
-use driftless::problem::{
-    BestKnown, Composite, Formulated, Formulation, Multipliers, Problem, TaskFile,
-};
+use driftless::reorientation::{BestKnown, Formulated, Formulation, TaskFile};
+use driftless::search::Rng;
+use driftless::search::{Composite, Multipliers, Problem};
 use nalgebra::dvector;
 
 fn paper(terms: usize) -> Formulated {

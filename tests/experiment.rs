@@ -7,9 +7,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use driftless::analysis;
 use driftless::experiment::{self, Instance, Plan, Progress, Record, RunSpec, Store};
+use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
-use driftless::oracle::{Oracle, Watch};
-use driftless::problem::{Analytic, Bounds, Evaluation, Points, Problem, TestFunction};
+use driftless::search::{Bounds, Evaluation, Points, Problem};
+use driftless::search::{Oracle, Watch};
 use polars::prelude::*;
 
 /// What a problem does at a point.

@@ -8,9 +8,10 @@ use std::sync::Arc;
 use driftless::analysis;
 use driftless::experiment::{self, Instance, Plan, Progress, Record, RunSpec, Store};
 use driftless::export::{ExportedRun, Suite, SuiteError, SuiteFormat, write_suite};
+use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
-use driftless::oracle::Watch;
-use driftless::problem::{Analytic, Bounds, Evaluation, Problem, TestFunction};
+use driftless::search::Watch;
+use driftless::search::{Bounds, Evaluation, Problem};
 
 struct Silent;
 

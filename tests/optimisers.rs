@@ -2,9 +2,10 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
-use driftless::oracle::{Best, Oracle, Rng, Stop, Watch};
-use driftless::problem::{Analytic, Bounds, Evaluation, Problem, TestFunction};
+use driftless::search::{Best, Oracle, Rng, Stop, Watch};
+use driftless::search::{Bounds, Evaluation, Problem};
 
 /// The cost to give at a point instead of the right one, if any.
 type Spoilt = fn(&[f64]) -> Option<f64>;

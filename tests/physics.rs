@@ -6,10 +6,9 @@ use driftless::attitude::net_rotation;
 use driftless::input::Document;
 use driftless::lanes::Width;
 use driftless::momentum::{Arm, Outer, RateSlopes, base_map, base_twist, total_momentum};
-use driftless::problem::{
-    Accuracy, Boxes, Evaluation, Formulated, Formulation, Points, Problem, Reorientation, TaskFile,
-};
+use driftless::reorientation::{Accuracy, Boxes, Formulated, Formulation, Reorientation, TaskFile};
 use driftless::robot::Robot;
+use driftless::search::{Evaluation, Points, Problem};
 use driftless::trajectory::Peaks;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -386,8 +385,9 @@ fn default_boxes_hold_the_solutions_of_interest() {
     ];
     let best: Vec<f64> = best.concat();
     let (problem, boxes) = paper();
-    let replay = driftless::problem::ReplayFile::paper();
-    let published = driftless::problem::ReplayFile::read(&replay).unwrap().build(&replay).unwrap();
+    let replay = driftless::reorientation::ReplayFile::paper();
+    let published =
+        driftless::reorientation::ReplayFile::read(&replay).unwrap().build(&replay).unwrap();
     let fine = problem.with_accuracy(Accuracy::FINE).assess(&best, None);
     assert!((fine.duration - 7.8185).abs() < 1e-3 && fine.residual() < 1e-4, "{fine:?}");
     let problem = std::sync::Arc::new(problem);

@@ -3,7 +3,7 @@
 use driftless::kinematics::{Outward, tool};
 use driftless::momentum::base_twist;
 use driftless::posture::Posture;
-use driftless::problem::{Motion, Reorientation, TaskFile};
+use driftless::reorientation::{Motion, Reorientation, TaskFile};
 use driftless::robot::Robot;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use driftless::kinematics::tool;
 use driftless::momentum::{base_map, generalised_jacobian};
-use driftless::problem::{Accuracy, Reorientation, TaskFile};
+use driftless::reorientation::{Accuracy, Reorientation, TaskFile};
 use driftless::task::Task;
 use driftless::trajectory::Peaks;
 use nalgebra::{DMatrix, Matrix3, Quaternion, UnitQuaternion, Vector3};

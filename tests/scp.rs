@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use driftless::input::Document;
 use driftless::optimiser::{De, Ending, Hybrid, Optimiser, Scp, Settings};
-use driftless::oracle::{Oracle, Rng, Stop, Watch};
-use driftless::problem::{Composite, Formulated, Formulation, Problem, TaskFile};
+use driftless::reorientation::{Formulated, Formulation, TaskFile};
+use driftless::search::{Composite, Problem};
+use driftless::search::{Oracle, Rng, Stop, Watch};
 use nalgebra::DVector;
 
 /// The best motion known with two terms a joint, which IPOPT finds too: `benches/peers/casadi`.

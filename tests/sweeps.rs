@@ -8,8 +8,8 @@ use driftless::analysis::{self, Run, best_run};
 use driftless::experiment::{self, ExperimentFile, Plan, Progress, Record, RunSpec, Store};
 use driftless::input::Document;
 use driftless::optimiser::{Ending, Scp};
-use driftless::oracle::{Oracle, Watch};
-use driftless::problem::{BestKnown, Formulated, Formulation, TaskFile};
+use driftless::reorientation::{BestKnown, Formulated, Formulation, TaskFile};
+use driftless::search::{Oracle, Watch};
 
 struct Quiet;
 

@@ -13,11 +13,11 @@ use std::time::Instant;
 
 use driftless::lanes::Width;
 use driftless::optimiser::{De, Optimiser, Pso, RandomSearch, Scp};
-use driftless::oracle::{Oracle, Rng, Watch};
-use driftless::problem::{
-    Accuracy, BestKnown, Bounds, Boxes, Composite, Evaluation, Formulated, Formulation,
-    Multipliers, Points, Problem, Reorientation, TaskFile,
+use driftless::reorientation::{
+    Accuracy, BestKnown, Boxes, Formulated, Formulation, Reorientation, TaskFile,
 };
+use driftless::search::{Bounds, Composite, Evaluation, Multipliers, Points, Problem};
+use driftless::search::{Oracle, Rng, Watch};
 use driftless::trajectory::Peaks;
 use nalgebra::{DVector, UnitQuaternion};
 use operations::{Operations, Peak};

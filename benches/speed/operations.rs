@@ -8,7 +8,7 @@ use std::time::Instant;
 use driftless::attitude::Rollout;
 use driftless::lanes::{LaneWork, Lanes, Width};
 use driftless::momentum::Arm;
-use driftless::problem::Reorientation;
+use driftless::reorientation::Reorientation;
 use driftless::scalar::Scalar;
 use driftless::trajectory::Sampler;
 

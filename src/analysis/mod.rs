@@ -23,7 +23,7 @@ pub use targets::{Targets, least_found, targets};
 pub use verdict::Finding;
 
 use crate::experiment::Plan;
-use crate::problem::Reorientation;
+use crate::reorientation::Reorientation;
 use blocks::Blocks;
 use runs::groups;
 

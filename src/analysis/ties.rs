@@ -42,8 +42,8 @@ mod tests {
 
     use super::*;
     use crate::experiment::Instance;
+    use crate::functions::{Analytic, TestFunction};
     use crate::optimiser::Settings;
-    use crate::problem::{Analytic, TestFunction};
 
     #[test]
     fn noise_is_taken_for_the_lowest_of_its_instance() {

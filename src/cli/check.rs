@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::{CliError, warn_of};
 use crate::input::{Document, InputError};
-use crate::problem::{ReplayFile, TaskFile};
+use crate::reorientation::{ReplayFile, TaskFile};
 use crate::robot::{Robot, RobotFile};
 
 /// Say what is wrong with an input file, or print it resolved

@@ -4,10 +4,12 @@ use clap::Args;
 use schemars::schema_for;
 
 use super::CliError;
+use crate::functions::TestFunction;
 use crate::lanes::Width;
 use crate::optimiser::Settings;
-use crate::problem::{Boxes, Formulated, Formulation, Problem as _, TaskFile, TestFunction};
+use crate::reorientation::{Boxes, Formulated, Formulation, TaskFile};
 use crate::robot::Robot;
+use crate::search::Problem as _;
 
 /// Show optimisers, problems and robots with their settings
 #[derive(Debug, Args)]

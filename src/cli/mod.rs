@@ -46,9 +46,9 @@ use thiserror::Error;
 
 use crate::export::ExportError;
 use crate::input::{Document, InputError};
-use crate::oracle::Watch;
 use crate::output::FileError;
 use crate::robot::Robot;
+use crate::search::Watch;
 
 /// Plan and benchmark the motion of free-floating space robots.
 ///

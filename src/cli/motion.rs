@@ -11,7 +11,7 @@ use crate::export::{self, MotionFormat, write_motion};
 use crate::output::check_writable;
 #[cfg(feature = "harness")]
 use crate::output::create_folder;
-use crate::problem::{Assessment, Motion, Reorientation};
+use crate::reorientation::{Assessment, Motion, Reorientation};
 use crate::trajectory::Family;
 
 /// Where to write a motion.

@@ -12,8 +12,8 @@ use super::progress::Bar;
 use super::{CliError, read_or, shown, warn_of, watch};
 use crate::input::nearest;
 use crate::optimiser::Settings;
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Accuracy, Assessment, BestKnown, Formulated, TaskFile};
+use crate::reorientation::{Accuracy, Assessment, BestKnown, Formulated, TaskFile};
+use crate::search::{Oracle, Rng, Stop};
 use crate::task::TaskTable;
 
 /// Find the best motion for one task

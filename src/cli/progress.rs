@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::oracle::Watch;
+use crate::search::Watch;
 
 /// Time between plain lines.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);

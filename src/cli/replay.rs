@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::motion::{AssessmentJson, MotionFiles, ShapeJson, Told};
 use super::{CliError, read_or, shown, warn_of};
-use crate::problem::{Published, Reading, ReplayFile};
+use crate::reorientation::{Published, Reading, ReplayFile};
 
 /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
 #[derive(Debug, Args)]

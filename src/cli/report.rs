@@ -16,7 +16,7 @@ use crate::analysis::{
 use crate::experiment::{Plan, Store};
 use crate::output::{create_folder, write_file};
 use crate::plot::{self, Chart};
-use crate::problem::{BestKnown, Motion, Reorientation};
+use crate::reorientation::{BestKnown, Motion, Reorientation};
 use crate::report::{Page, provenance, scenes};
 
 /// Make tables, figures and a page from what is stored

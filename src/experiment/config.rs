@@ -6,9 +6,10 @@ use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::{EntrantTable, FunctionTable, Plan, RandomPoses, TargetTable, field, functions};
+use super::{EntrantTable, Plan, RandomPoses, TargetTable, field};
+use crate::functions::{DEFAULTS as FUNCTION_DEFAULTS, FunctionTable};
 use crate::input::{Document, Fraction, InputError, Positive, count, non_empty};
-use crate::problem::{DEFAULTS as TASK_DEFAULTS, TrajectoryTable};
+use crate::reorientation::{DEFAULTS as TASK_DEFAULTS, TrajectoryTable};
 use crate::task::{PoseTable, TaskTable};
 
 const DEFAULTS: &str = include_str!("defaults.toml");
@@ -105,7 +106,7 @@ impl ExperimentFile {
                 return Err(document.error_at(place, message, None));
             }
         }
-        let problem = if on_functions { functions::DEFAULTS } else { TASK_DEFAULTS };
+        let problem = if on_functions { FUNCTION_DEFAULTS } else { TASK_DEFAULTS };
         let file: Self = document
             .parse_reshaped(&[DEFAULTS, problem], |table| field::spell_out(table, document))?;
         if file.optimiser.get_ref().is_empty() {

@@ -11,7 +11,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use super::caught::caught;
 use super::{Plan, RunError, RunSpec};
 use crate::optimiser::{Scp, Settings};
-use crate::oracle::{Oracle, Rng, Watch};
+use crate::search::{Oracle, Rng, Watch};
 
 /// What all trials may take together, on each thread.
 const ALLOWANCE: Duration = Duration::from_secs(4);

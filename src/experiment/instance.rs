@@ -5,9 +5,8 @@ use std::num::NonZeroU64;
 use std::sync::Arc;
 
 use super::caught::caught;
-use crate::problem::{
-    Assessment, BestKnown, Boxes, Formulated, Formulation, Problem, Reorientation,
-};
+use crate::reorientation::{Assessment, BestKnown, Boxes, Formulated, Formulation, Reorientation};
+use crate::search::Problem;
 
 /// One problem of an experiment.
 #[derive(Debug, Clone)]

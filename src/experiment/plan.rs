@@ -12,7 +12,7 @@ use super::{EntrantTable, ExperimentFile, Instance, Subject, TargetTable, sweep}
 use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::optimiser::Settings;
-use crate::problem::{Accuracy, Boxes};
+use crate::reorientation::{Accuracy, Boxes};
 use crate::task::Task;
 
 /// Raised when a change makes the same run give another result.

@@ -6,8 +6,8 @@ use nalgebra::{Unit, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::input::{count, positive, share};
-use crate::oracle::Rng;
 use crate::robot::Robot;
+use crate::search::Rng;
 use crate::task::{PoseTable, PostureParts};
 
 /// The `random_poses` table: how to draw pairs of start and goal.

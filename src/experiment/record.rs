@@ -7,8 +7,8 @@ use chrono::Utc;
 use polars::prelude::*;
 
 use super::{Plan, RunSpec};
-use crate::oracle::{Oracle, Stop, TracePoint};
-use crate::problem::Assessment;
+use crate::reorientation::Assessment;
+use crate::search::{Oracle, Stop, TracePoint};
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::caught::caught;
 use super::record::Ended;
 use super::{Plan, Record, RunSpec, Status, Store, StoreError};
-use crate::oracle::{Oracle, Rng, Watch};
+use crate::search::{Oracle, Rng, Watch};
 
 /// Told of every run that ends.
 pub trait Progress: Sync {

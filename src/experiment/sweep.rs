@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::{Evaluations, Instance, Sweep};
 use crate::input::{Document, InputError, Positive};
-use crate::problem::{BestKnown, TrajectoryTable};
+use crate::reorientation::{BestKnown, TrajectoryTable};
 use crate::task::{PoseTable, Task, TaskTable};
 
 /// Targets where the file states none: by which shares they exceed the best known cost.

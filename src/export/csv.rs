@@ -1,7 +1,7 @@
 //! Comma-separated values.
 
 use super::{ExportError, rows};
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 
 /// The table of a motion.
 pub(super) fn motion(motion: &Motion) -> Result<Vec<u8>, ExportError> {

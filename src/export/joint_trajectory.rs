@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::ExportError;
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 
 #[derive(Serialize)]
 struct JointTrajectory<'a> {

@@ -16,7 +16,7 @@ mod suite;
 use std::path::Path;
 
 use crate::output::{FileError, write_file};
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 #[cfg(feature = "harness")]
 pub use motions::write_motions;
 #[cfg(feature = "harness")]

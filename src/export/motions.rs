@@ -8,7 +8,7 @@ use super::{ExportError, INTERVALS, MotionFormat, write_motion};
 use crate::analysis::{Run, best_run};
 use crate::experiment::Plan;
 use crate::output::write_folder;
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 
 /// Writes the best motion of every instance that is a task into a folder of their own, whole or not at
 /// all; the number of motions. A file has the instance's label as its name, or `best` where there is none.

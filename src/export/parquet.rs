@@ -4,7 +4,7 @@ use polars::prelude::ParquetWriter;
 
 use super::ExportError;
 use crate::analysis::tables::motion_table;
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 
 /// The table of a motion.
 pub(super) fn motion(motion: &Motion) -> Result<Vec<u8>, ExportError> {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{CmaEs, De, Hybrid, LShade, NelderMead, Optimiser, Pso, RandomSearch, Scp};
-use crate::problem::Formulation;
+use crate::reorientation::Formulation;
 
 /// From one line an optimiser: the choice of one with its settings, and what has to be known of each.
 macro_rules! catalogue {

@@ -18,8 +18,9 @@ use super::distribution::{Constants, Distribution};
 use super::population::Population;
 use super::{Optimiser, mirror_from_unit};
 use crate::input::{count, non_negative, optional_count, share};
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Formulation, Points};
+use crate::reorientation::Formulation;
+use crate::search::Points;
+use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of CMA-ES.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use super::Optimiser;
 use super::population::{Population, index_besides};
 use crate::input::{fraction, optional_count, positive};
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::Formulation;
+use crate::reorientation::Formulation;
+use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of differential evolution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::oracle::Rng;
+use crate::search::Rng;
 
 /// How often a draw outside the box is drawn again.
 const REDRAWS: usize = 10;

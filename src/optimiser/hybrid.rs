@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{LShade, Optimiser, Scp, Settings};
 use crate::input::share;
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::Formulation;
+use crate::reorientation::Formulation;
+use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of a hybrid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

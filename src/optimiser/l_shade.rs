@@ -14,8 +14,9 @@ use serde::{Deserialize, Serialize};
 use super::Optimiser;
 use super::population::{Population, index_besides};
 use crate::input::{count, fraction, non_negative, optional_count};
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Formulation, Points};
+use crate::reorientation::Formulation;
+use crate::search::Points;
+use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of L-SHADE.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

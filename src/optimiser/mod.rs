@@ -22,8 +22,9 @@ pub use pso::{Inertia, Pso, Walls};
 pub use random::RandomSearch;
 pub use scp::{Ending, Scp};
 
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Evaluation, Formulation};
+use crate::reorientation::Formulation;
+use crate::search::Evaluation;
+use crate::search::{Oracle, Rng, Stop};
 
 /// A method of minimisation.
 ///

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Optimiser, mirror_from_unit, rank};
 use crate::input::{count, positive, share};
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::Formulation;
+use crate::reorientation::Formulation;
+use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of the simplex method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

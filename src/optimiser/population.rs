@@ -1,8 +1,8 @@
 //! What methods share that move a whole population at once.
 
 use super::{rank, uniform_point};
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Evaluation, Points};
+use crate::search::{Evaluation, Points};
+use crate::search::{Oracle, Rng, Stop};
 
 /// Points and what is known of them.
 pub(super) struct Population {

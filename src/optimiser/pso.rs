@@ -12,8 +12,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{Optimiser, rank, uniform_point};
 use crate::input::{count, finite, non_negative, positive, share};
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Evaluation, Formulation, Points};
+use crate::reorientation::Formulation;
+use crate::search::{Evaluation, Points};
+use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of the particle swarm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

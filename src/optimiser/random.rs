@@ -5,8 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Optimiser, uniform_point};
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::{Evaluation, Formulation, Points};
+use crate::reorientation::Formulation;
+use crate::search::{Evaluation, Points};
+use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of random search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

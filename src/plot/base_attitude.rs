@@ -5,7 +5,7 @@ use super::figure::Figure;
 use super::marks::{Line, Mark};
 use super::panel::{MARGIN, Panel, extent};
 use super::style::Stroke;
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 use crate::task::Task;
 
 /// ZYX Euler angles of the base over time; dotted lines are the goal's.

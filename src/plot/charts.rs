@@ -10,7 +10,7 @@ use super::{comparison, convergence, critical_difference, pareto, running_times,
 use crate::analysis::ALPHA;
 use crate::analysis::tables::Table;
 use crate::experiment::Plan;
-use crate::problem::BestKnown;
+use crate::reorientation::BestKnown;
 
 /// The names that an experiment's charts may have, but for those of its best motion.
 pub const NAMES: [&str; 14] = [

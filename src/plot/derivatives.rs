@@ -2,7 +2,7 @@
 
 use super::figure::Figure;
 use super::joint_angles::joint_panel;
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 use crate::trajectory::Limits;
 
 /// Joint rates, accelerations and jerks over time; dotted lines are the limits.

@@ -6,7 +6,7 @@ use super::marks::{Line, Mark};
 use super::panel::{MARGIN, Panel, extent};
 use super::sheet::printable;
 use super::style::Stroke;
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 
 /// Joint angles over time.
 pub fn joint_angles(motion: &Motion) -> Figure {

@@ -6,7 +6,7 @@ use super::sheet::printable;
 use super::style::{COLOURS, DASHES, INK, Marker, PAPER, Stroke, mix};
 use crate::experiment::Entrant;
 use crate::optimiser::Settings;
-use crate::problem::Formulation;
+use crate::reorientation::Formulation;
 
 /// The kinds of optimisers in the order of their colours and markers.
 const KINDS: [&str; 8] =

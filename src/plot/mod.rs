@@ -40,7 +40,7 @@ pub use running_times::{expected_running_time, profiles, running_time_distributi
 pub use snapshots::snapshots;
 pub use sweeps::{Swept, sweep};
 
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 use crate::task::Task;
 
 /// Intervals at which a motion is sampled for its charts.

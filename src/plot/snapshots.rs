@@ -8,7 +8,7 @@ use super::marks::{Line, Mark, Marked};
 use super::panel::Panel;
 use super::style::{COLOURS, DASHES, GRID, INK, Marker, PAPER, Stroke, Width, mix};
 use crate::posture::{Posture, Satellite};
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 use crate::task::Task;
 
 /// Snapshots of a motion, and those in a row.

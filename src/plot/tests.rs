@@ -19,7 +19,7 @@ use super::{
 };
 use crate::experiment::Entrant;
 use crate::optimiser::{Hybrid, Settings};
-use crate::problem::{JointMotion, Motion, TaskFile};
+use crate::reorientation::{JointMotion, Motion, TaskFile};
 
 /// Resolution of the stored pictures \[dots per inch\].
 const DPI: f32 = 110.0;

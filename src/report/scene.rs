@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::analysis::Run;
 use crate::experiment::Plan;
 use crate::posture::{Posture, Satellite};
-use crate::problem::{Motion, Reorientation};
+use crate::reorientation::{Motion, Reorientation};
 use crate::robot::{Joint, Robot};
 
 /// Most instances whose best motion is shown.

@@ -9,7 +9,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use driftless::experiment::Store;
-use driftless::oracle::Rng;
+use driftless::search::Rng;
 use polars::prelude::*;
 
 use crate::folder::{Folder, stderr, stdout};

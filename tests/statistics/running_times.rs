@@ -4,7 +4,7 @@ use driftless::analysis::statistics::{
     Bootstrap, ProfileStep, Trial, convergence_target, data_profiles, expected_running_time,
     performance_profiles, quantile, simulated_restarts,
 };
-use driftless::oracle::Rng;
+use driftless::search::Rng;
 
 use super::{Case, cases, reals};
 

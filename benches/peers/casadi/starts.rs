@@ -9,8 +9,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use driftless::optimiser::Scp;
-use driftless::oracle::{Oracle, Rng, Watch};
-use driftless::problem::{Formulated, Formulation, Problem, TaskFile};
+use driftless::reorientation::{Formulated, Formulation, TaskFile};
+use driftless::search::Problem;
+use driftless::search::{Oracle, Rng, Watch};
 use serde_json::{Value, json};
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
-use driftless::oracle::{Oracle, Rng, Watch};
-use driftless::problem::{Analytic, TestFunction};
+use driftless::search::{Oracle, Rng, Watch};
 use serde::Deserialize;
 
 /// `race.json`.

@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use driftless::lanes::Width;
-use driftless::problem::TaskFile;
+use driftless::reorientation::TaskFile;
 use nalgebra::UnitQuaternion;
 use serde_json::json;
 

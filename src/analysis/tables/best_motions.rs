@@ -4,7 +4,7 @@ use polars::prelude::*;
 
 use super::{Analysis, Table};
 use crate::analysis::Run;
-use crate::problem::Reorientation;
+use crate::reorientation::Reorientation;
 
 /// One line an instance with a run that found something.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {

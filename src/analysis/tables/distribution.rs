@@ -6,7 +6,7 @@ use super::fixed_target::times;
 use super::{Analysis, Table};
 use crate::analysis::Run;
 use crate::analysis::statistics::{Trial, simulated_restarts};
-use crate::oracle::Rng;
+use crate::search::Rng;
 
 /// Targets: the least cost known and 10², …, 10⁻⁸ above it, five to a power of ten, as COCO has them.
 const TARGETS: i32 = 51;

@@ -19,7 +19,7 @@ pub use motion::motion_table;
 
 use super::statistics::Bootstrap;
 use super::{Analysis, summary};
-use crate::oracle::Rng;
+use crate::search::Rng;
 
 /// One table of a report.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use polars::prelude::*;
 
 use super::Table;
-use crate::problem::Motion;
+use crate::reorientation::Motion;
 
 /// One row a time and joint: time \[s\], joint, angle \[rad\] and its derivatives \[rad, s\], and the base's attitude as a
 /// quaternion that turns base axes into inertial axes.

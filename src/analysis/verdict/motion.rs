@@ -3,7 +3,7 @@
 use super::Finding;
 use super::words::{list, number, off_the_goal, percent, plural};
 use crate::analysis::{Analysis, Run};
-use crate::problem::{Motion, Reorientation};
+use crate::reorientation::{Motion, Reorientation};
 
 const QUESTION: &str = "What does the motion look like?";
 

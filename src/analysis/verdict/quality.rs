@@ -7,7 +7,7 @@ use super::words::{list, number, off_the_goal, plural, span};
 use crate::analysis::ties::{SAME, SAME_MOTION};
 use crate::analysis::{Analysis, Run};
 use crate::experiment::Instance;
-use crate::problem::{BestKnown, Reorientation};
+use crate::reorientation::{BestKnown, Reorientation};
 
 const QUESTION: &str = "How good is it?";
 

@@ -2,8 +2,8 @@ use crate::analysis::handmade::{plan, runs};
 use crate::analysis::{Analysis, Finding, Run, load, targets};
 use crate::experiment::{self, ExperimentFile, Plan, Progress, Record, RunSpec, Store, Subject};
 use crate::lanes::Width;
-use crate::oracle::Watch;
-use crate::problem::BestKnown;
+use crate::reorientation::BestKnown;
+use crate::search::Watch;
 
 pub(super) fn findings(plan: &Plan, runs: &[Run]) -> Vec<Finding> {
     Analysis::new(plan, runs, &targets(plan, runs)).findings()

@@ -9,8 +9,8 @@ use polars::prelude::*;
 use super::read::{is_batch, only};
 use super::{SEVERAL, Stack, Store, StoreError, TABLES, io_error};
 use crate::digest::digest;
-use crate::oracle::Watch;
 use crate::output::sync_folder;
+use crate::search::Watch;
 
 /// A merged batch has no more runs…
 pub(super) const MOST_RUNS: usize = 10_000;
@@ -221,7 +221,7 @@ fn new_name(keys: &[String]) -> String {
 mod tests {
     use super::*;
     use crate::experiment::store::batch_name;
-    use crate::oracle::Rng;
+    use crate::search::Rng;
 
     fn key(i: usize) -> String {
         format!("{i:016x}")

@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::ACTIVE;
 use super::subproblem::{Model, Step, Values};
-use crate::oracle::{Oracle, Stop};
-use crate::problem::{Bounds, Linearisation, Multipliers, Piece};
+use crate::search::{Bounds, Linearisation, Multipliers, Piece};
+use crate::search::{Oracle, Stop};
 
 /// A point with all that is known there.
 #[derive(Clone)]

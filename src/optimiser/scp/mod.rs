@@ -27,8 +27,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Optimiser;
 use crate::input::{count, optional_count, positive, share};
-use crate::oracle::{Oracle, Rng, Stop};
-use crate::problem::Bounds;
+use crate::search::Bounds;
+use crate::search::{Oracle, Rng, Stop};
 use iterate::Iterate;
 use subproblem::{Model, Region, Step, Values};
 

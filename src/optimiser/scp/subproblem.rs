@@ -6,8 +6,8 @@ use clarabel::solver::{
 };
 use nalgebra::{DMatrix, DVector};
 
-use crate::oracle::{Oracle, Stop};
-use crate::problem::{Bounds, Linearisation};
+use crate::search::{Bounds, Linearisation};
+use crate::search::{Oracle, Stop};
 
 /// The part of the box within the trust region, as bounds on the step.
 pub(super) struct Region {

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
+use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    Accuracy, Assessment, Bounds, Boxes, Composite, Evaluation, Points, Problem, Reorientation,
-    Workspace,
-};
+use super::fitness::{Accuracy, Assessment, Reorientation};
+use super::measure::Workspace;
+use super::settings::Boxes;
+use crate::search::{Bounds, Composite, Evaluation, Linearisation, Multipliers, Points, Problem};
 
 /// The variables in which an optimiser sees the task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -137,5 +138,15 @@ impl Problem for Formulated {
 
     fn composite(&self) -> Option<&dyn Composite> {
         (self.formulation == Formulation::TimeFree).then_some(self)
+    }
+}
+
+impl Composite for Formulated {
+    fn linearise(&self, x: &[f64]) -> Linearisation {
+        self.task().linearise(x)
+    }
+
+    fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> DMatrix<f64> {
+        self.task().curvature(x, multipliers)
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::UnitQuaternion;
 
-use super::{Accuracy, Reorientation};
+use super::fitness::{Accuracy, Reorientation};
 use crate::attitude::{JointState, Midpoints, Rollout};
 use crate::lanes::{LaneWork, Lanes};
 use crate::momentum::Arm;

@@ -2,7 +2,7 @@
 
 use nalgebra::UnitQuaternion;
 
-use super::Reorientation;
+use super::fitness::Reorientation;
 use crate::attitude::increments;
 
 /// Everything that moves, at equally spaced times from start to end.

@@ -1,14 +1,13 @@
 //! The only door from an optimiser to a problem: it counts, keeps the best, and says when to stop.
 
-mod rng;
-
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use nalgebra::DMatrix;
 
-use crate::problem::{Bounds, Composite, Evaluation, Linearisation, Multipliers, Points, Problem};
-pub use rng::Rng;
+use super::composite::{Composite, Linearisation, Multipliers};
+use super::points::{Bounds, Points};
+use super::problem::{Evaluation, Problem};
 
 /// Why an optimiser has to stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

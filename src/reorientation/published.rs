@@ -6,9 +6,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::reorientation::{attitude_error, cost};
-use super::settings::{DEFAULTS, check_terms};
-use super::{Accuracy, Assessment, Reorientation, TrajectoryTable};
+use super::fitness::{Accuracy, Assessment, Reorientation, attitude_error, cost};
+use super::settings::{DEFAULTS, TrajectoryTable, check_terms};
 use crate::input::{Document, Finite, InputError, Positive};
 use crate::momentum::base_twist;
 use crate::task::{Posture, Task, TaskTable};

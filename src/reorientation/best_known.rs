@@ -10,7 +10,7 @@ use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::{Accuracy, Assessment, Reorientation};
+use super::fitness::{Accuracy, Assessment, Reorientation};
 use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::robot::Robot;

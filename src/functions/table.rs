@@ -6,12 +6,12 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::Instance;
+use super::analytic::{Analytic, TestFunction};
+use crate::experiment::Instance;
 use crate::input::{Document, InputError, count, count_from};
-use crate::problem::{Analytic, TestFunction};
 
 /// What a `[functions]` table leaves out is taken from here.
-pub(super) const DEFAULTS: &str = "[functions]\ndimension = [10]\ninstances = 1\n";
+pub(crate) const DEFAULTS: &str = "[functions]\ndimension = [10]\ninstances = 1\n";
 
 /// Targets where the file states none; the least value is zero.
 const TARGETS: [f64; 3] = [1e-2, 1e-5, 1e-8];
@@ -35,7 +35,7 @@ pub struct Dimension(#[serde(deserialize_with = "count_from::<2, 1000, _, _>")] 
 
 impl FunctionTable {
     /// The instances; those that differ in shift and rotation alone are one group.
-    pub(super) fn instances(&self, document: &Document) -> Result<Vec<Instance>, InputError> {
+    pub(crate) fn instances(&self, document: &Document) -> Result<Vec<Instance>, InputError> {
         let (names, dimensions) = (self.name.get_ref(), self.dimension.get_ref());
         for (span, empty) in
             [(self.name.span(), names.is_empty()), (self.dimension.span(), dimensions.is_empty())]

@@ -34,7 +34,7 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Bounds, Evaluation, Problem};
+use crate::search::{Bounds, Evaluation, Problem};
 
 /// A function of any number of variables with one known minimum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::{Accuracy, Reorientation};
+use super::fitness::{Accuracy, Reorientation};
 use crate::input::{Document, InputError, Positive, count, positive_interval};
 use crate::task::{Task, TaskTable};
 use crate::trajectory::{Family, Limits, Peaks};

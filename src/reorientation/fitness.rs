@@ -6,9 +6,9 @@ use std::sync::Arc;
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
-use super::Evaluation;
 use super::measure::{Fitness, Measure, Tables, Turn, Workspace, powers};
 use crate::lanes::Width;
+use crate::search::Evaluation;
 use crate::task::Task;
 use crate::trajectory::{Family, Peaks, excess, longest_asked};
 
