@@ -48,8 +48,13 @@ pub mod attitude;
 pub mod cli;
 pub mod digest;
 #[cfg(feature = "harness")]
+pub mod exhibit;
+#[cfg(feature = "harness")]
 pub mod experiment;
+#[cfg(feature = "harness")]
 pub mod export;
+#[cfg(feature = "harness")]
+pub mod figure;
 pub mod functions;
 pub mod input;
 pub mod kinematics;
@@ -60,6 +65,8 @@ pub mod output;
 #[cfg(feature = "harness")]
 pub mod plot;
 pub mod posture;
+#[cfg(feature = "harness")]
+pub mod registry;
 pub mod reorientation;
 #[cfg(feature = "harness")]
 pub mod report;

@@ -1,5 +1,6 @@
 //! Writing files whole or not at all.
 
+use std::collections::HashSet;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -94,4 +95,22 @@ fn readable_by_all(mode: u32) -> tempfile::Builder<'static, 'static> {
         builder.permissions(fs::Permissions::from_mode(mode));
     }
     builder
+}
+
+/// A name, with a number where it is taken. Some file systems take capitals and small letters for the same.
+pub fn unlike(plain: &str, taken: &mut HashSet<String>) -> String {
+    let mut name = plain.to_owned();
+    for n in 2.. {
+        if taken.insert(name.to_lowercase()) {
+            break;
+        }
+        name = format!("{plain}-{n}");
+    }
+    name
+}
+
+/// A label as part of a file's name on any system: letters, digits, `-` and `_`, a hundred at most.
+pub fn file_name(label: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
+    label.trim().chars().map(plain).take(100).collect()
 }

@@ -1,10 +1,9 @@
 //! What the tests of the final costs stand on, and what they say.
 
-use super::Run;
 use super::pairs::{Pair, pairs};
 use super::statistics::{Friedman, friedman, median};
 use super::ties::settled;
-use crate::experiment::Plan;
+use crate::experiment::{Plan, Run};
 
 /// Level of the tests.
 pub const ALPHA: f64 = 0.05;

@@ -3,6 +3,8 @@
 use comfy_table::{CellAlignment, ContentArrangement, Table, TableComponent, presets};
 use polars::prelude::*;
 
+use crate::exhibit::words::significant;
+
 /// Draws a table for a terminal; numbers to five significant digits.
 ///
 /// A text column in which every cell is empty is left out.
@@ -127,38 +129,5 @@ fn cell(value: &AnyValue<'_>) -> String {
         AnyValue::StringOwned(text) => text.replace(['\n', '\r'], " "),
         AnyValue::Null => "–".to_owned(),
         other => other.to_string(),
-    }
-}
-
-/// So many significant digits, in plain notation where that is readable.
-pub(super) fn significant(number: f64, digits: usize) -> String {
-    if !number.is_finite() {
-        return if number == f64::INFINITY { "∞" } else { "–" }.to_owned();
-    }
-    let magnitude = if number == 0.0 { 0.0 } else { number.abs().log10().floor() };
-    if (-4.0..7.0).contains(&magnitude) {
-        format!("{number:.*}", (digits as f64 - 1.0 - magnitude).max(0.0) as usize)
-    } else {
-        format!("{number:.3e}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::significant;
-
-    #[test]
-    fn keeps_five_significant_digits() {
-        for (number, text) in [
-            (0.0, "0.0000"),
-            (0.781_849_4, "0.78185"),
-            (13.290_71, "13.291"),
-            (123_456.7, "123457"),
-            (0.000_123_456, "0.00012346"),
-            (1.5e-7, "1.500e-7"),
-            (f64::NAN, "–"),
-        ] {
-            assert_eq!(significant(number, 5), text);
-        }
     }
 }

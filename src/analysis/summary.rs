@@ -2,14 +2,13 @@
 
 use polars::prelude::*;
 
-use super::Targets;
-use super::runs::{Run, groups};
+use super::grouped::groups;
 use super::statistics::quantile;
-use crate::experiment::{Instance, Plan};
+use super::targets::Targets;
+use crate::experiment::{Plan, Run};
 
 /// One line an optimiser and group of instances: quartiles of the best cost over the runs, failures
-/// counted as infinite, and the best motion's residual \[°\] and duration \[s\] where there are
-/// motions. A column for each target says how many runs reached their instance's. Costs are certified.
+/// counted as infinite, and what the subject measures of the best run's point. A column for each target says how many runs reached their instance's. Costs are certified.
 pub fn summary(plan: &Plan, runs: &[Run], targets: &Targets) -> PolarsResult<DataFrame> {
     let groups = groups(plan, runs);
     let texts = |value: &dyn Fn(&[&Run]) -> String| -> Vec<String> {
@@ -21,10 +20,6 @@ pub fn summary(plan: &Plan, runs: &[Run], targets: &Targets) -> PolarsResult<Dat
     let counts = |value: &dyn Fn(&[&Run]) -> u64| -> Vec<u64> {
         groups.iter().map(|group| value(group)).collect()
     };
-    let best = |group: &[&Run], value: fn(&Run) -> f64| {
-        let best = group.iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
-        best.map_or(f64::NAN, |run| value(run))
-    };
     let best_cost = format!("best {}", plan.cost_symbol());
     let mut columns = df!(
         "group" => texts(&|g| plan.instances[g[0].instance].group.clone()),
@@ -35,21 +30,35 @@ pub fn summary(plan: &Plan, runs: &[Run], targets: &Targets) -> PolarsResult<Dat
         "quartile 1" => reals(&|g| quantile_of(g, |run| run.cost, 0.25)),
         "median" => reals(&|g| quantile_of(g, |run| run.cost, 0.5)),
         "quartile 3" => reals(&|g| quantile_of(g, |run| run.cost, 0.75)),
-        "residual [°]" => reals(&|g| best(g, |run| run.residual_deg)),
-        "t_f [s]" => reals(&|g| best(g, |run| run.duration)),
-        "evaluations" => counts(&|g| g.iter().map(|run| run.evaluations).sum()),
-        "s/run" => reals(&|g| quantile_of(g, |run| run.seconds, 0.5)),
     )?;
-    if !plan.instances.iter().any(Instance::is_task) {
-        columns = columns.drop_many(["residual [°]", "t_f [s]"]);
-    }
+    let best: Vec<Option<&Run>> = groups
+        .iter()
+        .map(|group| group.iter().copied().min_by(|a, b| a.cost.total_cmp(&b.cost)))
+        .collect();
+    let mut tail = measure_columns(plan, &best);
+    tail.push(Column::new(
+        "evaluations".into(),
+        counts(&|g| g.iter().map(|r| r.evaluations).sum()),
+    ));
+    tail.push(Column::new("s/run".into(), reals(&|g| quantile_of(g, |run| run.seconds, 0.5))));
+    columns = columns.hstack(&tail)?;
     for column in target_columns(plan, targets, &groups) {
         columns.with_column(column)?;
     }
     Ok(columns)
 }
 
-/// One column a target: how many runs reached their instance's; where groups have different ones, each cell
+/// One column for each measure that is shown, of some runs.
+pub(super) fn measure_columns(plan: &Plan, runs: &[Option<&Run>]) -> Vec<Column> {
+    let shown = plan.measures().iter().enumerate();
+    let shown = shown.filter_map(|(place, m)| Some((place, m.heading.as_deref()?)));
+    let values = |place: usize| -> Vec<f64> {
+        runs.iter().map(|run| run.map_or(f64::NAN, |run| run.measure(place))).collect()
+    };
+    shown.map(|(place, heading)| Column::new(heading.into(), values(place))).collect()
+}
+
+/// One column per target: how many runs reached their instance's; where groups have different ones, each cell
 /// says which.
 fn target_columns(plan: &Plan, targets: &Targets, groups: &[Vec<&Run>]) -> Vec<Column> {
     let symbol = plan.cost_symbol();

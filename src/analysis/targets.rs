@@ -1,8 +1,7 @@
 //! Costs that a run is asked to reach.
 
-use super::Run;
 use super::statistics::convergence_target;
-use crate::experiment::{Instance, Plan};
+use crate::experiment::{Instance, Plan, Run};
 
 /// Moré and Wild's τ, for instances without targets of their own.
 const TAUS: [f64; 3] = [1e-1, 1e-3, 1e-5];
@@ -39,10 +38,11 @@ pub fn targets(plan: &Plan, runs: &[Run]) -> Targets {
     let found = least_found(plan, runs);
     let stated: Vec<bool> = plan.instances.iter().map(|i| !i.targets.is_empty()).collect();
     let of = |(instance, &found): (&Instance, &f64)| match instance.targets.as_slice() {
-        [] => more_wild(found, instance.centre_cost()).to_vec(),
+        [] => more_wild(found, instance.start_cost()).to_vec(),
         targets => targets.to_vec(),
     };
-    let known = |(instance, found): (&Instance, &f64)| instance.known_cost().unwrap_or(*found);
+    let known =
+        |(instance, found): (&Instance, &f64)| instance.subject.known_cost().unwrap_or(*found);
     Targets {
         values: plan.instances.iter().zip(&found).map(of).collect(),
         least: plan.instances.iter().zip(&found).map(known).collect(),

@@ -80,19 +80,22 @@ impl Check {
 
 #[cfg(feature = "harness")]
 fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError> {
-    use super::run::{default_jobs, warn_of_budgets, warn_of_robot};
-    use crate::experiment::{self, ExperimentFile, Plan};
+    use super::run::default_jobs;
+    use super::warnings::{warn_of_budgets, warn_of_subjects};
+    use crate::experiment::{self, Experiment};
+    use crate::registry::registry;
     use indicatif::HumanDuration;
-    let file = ExperimentFile::read(document)?;
-    let plan = Plan::new(&file, document)?;
-    warn_of_robot(&plan);
+    let experiment = Experiment::read(document, &registry())?;
+    let plan = experiment.plan()?;
+    warn_of_subjects(&plan);
     warn_of_budgets(&plan);
-    let own = plan.optimisers.iter().map(|entrant| entrant.seeds.unwrap_or(file.seeds));
+    let own = plan.optimisers.iter().map(|entrant| entrant.seeds.unwrap_or(experiment.seeds()));
     let seeds = match (own.clone().min(), own.max()) {
         (Some(fewest), Some(most)) if fewest < most => format!("{fewest} to {most}"),
-        _ => file.seeds.to_string(),
+        _ => experiment.seeds().to_string(),
     };
-    print_resolved("experiment", &file.with_targets(&plan))?;
+    say!("# experiment, with every default filled in");
+    say!("{}", plan.experiment.to_toml()?.trim_end());
     let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
     say!(
         "\n# {} runs: {instances} instances × {optimisers} optimisers × {seeds} seeds",

@@ -15,9 +15,9 @@ pub(super) struct Compact {
 impl Compact {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let results = self.results.open()?;
-        let folder = results.folder.display();
+        let folder = results.path().display();
         match results.store.compact(&watch())? {
-            Some(done) => say!("{folder}: {} files a table, {} before", done.after, done.before),
+            Some(done) => say!("{folder}: {} files per table, {} before", done.after, done.before),
             None => say!("{folder}: another process is merging files"),
         }
         Ok(())

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::CliError;
-use super::results::{Results, ResultsFolder, no_results};
-use crate::analysis::{self, Run};
-use crate::experiment::{Instance, Plan};
-use crate::export::{self, MotionFormat, Suite, SuiteFormat, write_suite};
+use super::results::{ResultsFolder, no_results};
+use crate::experiment::{Plan, Run, load};
+use crate::export::{Suite, SuiteFormat, write_suite};
+use crate::reorientation::{MotionFormat, TaskSubject, write_motions};
 
 /// Write an experiment's runs as other benchmarking tools read them, or its best motions
 #[derive(Debug, Args)]
@@ -39,20 +39,20 @@ enum Format {
 
 impl Export {
     pub(super) fn execute(self) -> Result<(), CliError> {
-        let Results { folder, plan, store } = self.results.open()?;
-        let runs = analysis::load(&plan, &store)?;
+        let folder = self.results.open()?;
+        let (plan, runs) = (&folder.plan, load(&folder.plan, &folder.store)?);
         if runs.is_empty() {
-            return Err(no_results(&folder, "none of its experiment's runs"));
+            return Err(no_results(folder.path(), "none of its experiment's runs"));
         }
         if runs.len() < plan.runs.len() {
             note!("note: {} of {} runs are stored so far", runs.len(), plan.runs.len());
         }
         match self.format {
-            Format::Ioh => self.write_runs(SuiteFormat::Ioh, &plan, &runs),
-            Format::Coco => self.write_runs(SuiteFormat::Coco, &plan, &runs),
-            Format::Csv => self.write_motions(MotionFormat::Csv, &plan, &runs),
-            Format::Parquet => self.write_motions(MotionFormat::Parquet, &plan, &runs),
-            Format::Yaml => self.write_motions(MotionFormat::Yaml, &plan, &runs),
+            Format::Ioh => self.write_runs(SuiteFormat::Ioh, plan, &runs),
+            Format::Coco => self.write_runs(SuiteFormat::Coco, plan, &runs),
+            Format::Csv => self.write_motions(MotionFormat::Csv, plan, &runs),
+            Format::Parquet => self.write_motions(MotionFormat::Parquet, plan, &runs),
+            Format::Yaml => self.write_motions(MotionFormat::Yaml, plan, &runs),
         }
     }
 
@@ -76,11 +76,11 @@ impl Export {
         plan: &Plan,
         runs: &[Run],
     ) -> Result<(), CliError> {
-        if !plan.instances.iter().any(Instance::is_task) {
-            let message = "test functions have no motions".to_owned();
+        if plan.instances.iter().all(|instance| TaskSubject::of(instance).is_none()) {
+            let message = "the problems of this experiment have no motions".to_owned();
             return Err(CliError::Usage { message, help: Some("expected ioh or coco".to_owned()) });
         }
-        let count = export::write_motions(&self.out, format, plan, runs)?;
+        let count = write_motions(&self.out, format, plan, runs)?;
         say!("{}: the best motions of {count} instances", self.out.display());
         Ok(())
     }

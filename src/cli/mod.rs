@@ -33,6 +33,8 @@ mod results;
 mod run;
 #[cfg(feature = "harness")]
 mod status;
+#[cfg(feature = "harness")]
+mod warnings;
 
 use std::fmt;
 use std::io::{self, Write as _};
@@ -44,9 +46,9 @@ use clap::{Parser, Subcommand};
 use miette::{Diagnostic, MietteHandlerOpts, Report};
 use thiserror::Error;
 
-use crate::export::ExportError;
 use crate::input::{Document, InputError};
 use crate::output::FileError;
+use crate::reorientation::ExportError;
 use crate::robot::Robot;
 use crate::search::Watch;
 
@@ -116,7 +118,7 @@ enum CliError {
     /// A figure could not be drawn or written.
     #[cfg(feature = "harness")]
     #[error(transparent)]
-    Plot(#[from] crate::plot::PlotError),
+    Plot(#[from] crate::figure::FigureError),
     /// A run could not be done or stored.
     #[cfg(feature = "harness")]
     #[error(transparent)]
@@ -134,20 +136,46 @@ enum CliError {
     #[cfg(feature = "harness")]
     #[error(transparent)]
     Suite(#[from] crate::export::SuiteError),
-    /// A report's page could not be made.
+    /// A report could not be made.
     #[cfg(feature = "harness")]
     #[error(transparent)]
-    Page(#[from] crate::report::PageError),
+    Report(#[from] crate::report::ReportError),
     /// A table could not be made.
     #[cfg(feature = "harness")]
     #[error(transparent)]
     Table(#[from] polars::error::PolarsError),
     /// A file could not be put into words.
-    #[error("cannot write what was resolved")]
-    Resolved(#[from] toml::ser::Error),
+    #[error("cannot write what was resolved: {0}")]
+    Resolved(String),
     /// A file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
+}
+
+#[cfg(feature = "harness")]
+impl From<crate::experiment::FolderError> for CliError {
+    fn from(error: crate::experiment::FolderError) -> Self {
+        use crate::experiment::FolderError;
+        match error {
+            FolderError::Input(error) => Self::Input(error),
+            FolderError::Store(error) => Self::Store(error),
+            FolderError::File(error) => Self::File(error),
+            FolderError::NoResults(_) => {
+                Self::Usage { message: error.to_string(), help: Some(results::HELP.to_owned()) }
+            }
+            FolderError::Another { .. } => Self::Usage {
+                message: error.to_string(),
+                help: Some("choose another folder with --out".to_owned()),
+            },
+            FolderError::Written(message) => Self::Resolved(message),
+        }
+    }
+}
+
+impl From<toml::ser::Error> for CliError {
+    fn from(error: toml::ser::Error) -> Self {
+        Self::Resolved(error.to_string())
+    }
 }
 
 impl CliError {

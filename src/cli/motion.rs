@@ -7,11 +7,11 @@ use clap::Args;
 use serde::Serialize;
 
 use super::CliError;
-use crate::export::{self, MotionFormat, write_motion};
 use crate::output::check_writable;
 #[cfg(feature = "harness")]
 use crate::output::create_folder;
 use crate::reorientation::{Assessment, Motion, Reorientation};
+use crate::reorientation::{INTERVALS, MotionFormat, write_motion};
 use crate::trajectory::Family;
 
 /// Where to write a motion.
@@ -60,13 +60,14 @@ impl MotionFiles {
         duration: f64,
     ) -> Result<(), CliError> {
         if let Some((path, format)) = self.format()? {
-            let motion = Motion::sample(problem, coefficients, duration, export::INTERVALS);
+            let motion = Motion::sample(problem, coefficients, duration, INTERVALS);
             write_motion(path, format, &motion)?;
         }
         #[cfg(feature = "harness")]
         if let Some(folder) = &self.figures {
-            let motion = Motion::sample(problem, coefficients, duration, crate::plot::SAMPLES);
-            crate::plot::write_motion_figures(folder, &motion, problem.task())?;
+            let motion =
+                Motion::sample(problem, coefficients, duration, crate::reorientation::SAMPLES);
+            crate::reorientation::write_motion_figures(folder, &motion, problem.task())?;
         }
         Ok(())
     }

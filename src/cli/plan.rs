@@ -12,7 +12,7 @@ use super::progress::Bar;
 use super::{CliError, read_or, shown, warn_of, watch};
 use crate::input::nearest;
 use crate::optimiser::Settings;
-use crate::reorientation::{Accuracy, Assessment, BestKnown, Formulated, TaskFile};
+use crate::reorientation::{Accuracy, Assessment, BestKnown, Formulated, Formulation, TaskFile};
 use crate::search::{Oracle, Rng, Stop};
 use crate::task::TaskTable;
 
@@ -86,7 +86,12 @@ impl Plan {
         warn_of(&problem.task().robot);
         let found = self.search(
             &settings,
-            Formulated::new(settings.formulation(), Arc::new(problem), &boxes),
+            // Default settings name no formulation.
+            Formulated::new(
+                Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree),
+                Arc::new(problem),
+                &boxes,
+            ),
         )?;
         if self.json {
             say!("{}", self.json(&found));

@@ -7,15 +7,12 @@ use clap::Args;
 
 use super::progress::Bar;
 use super::report::report;
-use super::results::EXPERIMENT;
-use super::{CliError, read_or, warn_of, watch};
-use crate::analysis;
+use super::warnings::warn_of_subjects;
+use super::{CliError, read_or, watch};
 use crate::experiment::{
-    self, ExperimentFile, Instance, Plan, Progress, Record, RunSpec, Shard, ShardChoice, Store,
+    Experiment, Folder, Options, Plan, Progress, Record, RunSpec, Shard, ShardChoice,
 };
-use crate::input::Document;
-use crate::output::{check_writable, write_file};
-use crate::robot::RobotFile;
+use crate::registry::registry;
 
 /// Run an experiment: every optimiser on every instance for every seed
 #[derive(Debug, Args)]
@@ -57,12 +54,12 @@ struct Lines<'a> {
 impl Progress for Lines<'_> {
     fn finished(&self, run: &RunSpec, record: &Record) {
         let optimiser = &self.plan.optimisers[run.optimiser].label;
-        let instance = &self.plan.instances[run.instance].label;
+        let instance = &self.plan.instances[run.instance];
+        let (instance, subject) = (&instance.label, &instance.subject);
         let space = if instance.is_empty() { "" } else { " " };
         let found = match record.cost {
             cost if !cost.is_finite() => "nothing found".to_owned(),
-            cost if self.plan.instances[run.instance].is_task() => format!("J {cost:.6}"),
-            cost => format!("f {cost:.3e}"),
+            cost => format!("{} {}", subject.cost_symbol(), subject.cost_text(cost)),
         };
         let (status, message) = (record.status.name(), record.status.message());
         if self.quiet && message.is_empty() {
@@ -80,49 +77,46 @@ impl Progress for Lines<'_> {
 impl Run {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let shard = self.shard.map(told).transpose()?;
-        let document = read_or(self.file.as_deref(), ExperimentFile::embedded)?;
-        let mut file = ExperimentFile::read(&document)?;
+        let (document, registry) =
+            (read_or(self.file.as_deref(), Experiment::embedded)?, registry());
+        let mut experiment = Experiment::read(&document, &registry)?;
         if let Some(seeds) = self.seeds.and_then(NonZeroU64::new) {
-            file = file.with_seeds(seeds);
+            experiment = experiment.with_seeds(seeds);
         }
         if let Some(evaluations) = self.budget.and_then(NonZeroU64::new) {
-            file = file.with_budget(evaluations);
+            experiment = experiment.with_budget(evaluations);
         }
-        let plan = Plan::new(&file, &document)?;
-        warn_of_robot(&plan);
-        let folder = self.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name));
-        check_folder(&folder, &file.name)?;
-        let store = Store::open(&folder)?;
-        keep_inputs(file.with_targets(&plan), &document, &folder)?;
-        let mine = |place: usize| shard.is_none_or(|shard| shard.holds(place));
-        let places = plan.runs.iter().enumerate();
-        let mine: Vec<&RunSpec> = places.filter(|(i, _)| mine(*i)).map(|(_, run)| run).collect();
-        self.run_missing(&plan, &mine, &store, &folder)?;
-        let stored = store.keys()?;
+        let plan = experiment.plan()?;
+        warn_of_subjects(&plan);
+        let path = self.out.clone().unwrap_or_else(|| Path::new("results").join(&plan.name));
+        let folder = Folder::create(&path, plan, &registry)?;
+        if folder.was_another {
+            note!(
+                "note: {} holds runs of another version of this experiment; they stay there, and those \
+                 that no longer belong are left out of the summary",
+                path.display()
+            );
+        }
+        self.run_missing(&folder, shard)?;
+        let (plan, stored) = (&folder.plan, folder.store.keys()?);
         let stored = plan.runs.iter().filter(|run| stored.contains(&run.key)).count();
         match shard {
             Some(shard) if stored < plan.runs.len() => {
                 say!(
                     "shard {shard}: its {} runs are stored in {}, {stored} of the experiment's {}; \
                      summary and figures come with the last",
-                    mine.len(),
-                    folder.display(),
+                    folder.runs(Some(shard)).len(),
+                    path.display(),
                     plan.runs.len()
                 );
                 Ok(())
             }
-            _ => report(&plan, &store, &analysis::load(&plan, &store)?, &folder),
+            _ => report(plan, &folder.store, &path),
         }
     }
 
-    fn run_missing(
-        &self,
-        plan: &Plan,
-        mine: &[&RunSpec],
-        store: &Store,
-        folder: &Path,
-    ) -> Result<(), CliError> {
-        let watch = watch();
+    fn run_missing(&self, folder: &Folder, shard: Option<Shard>) -> Result<(), CliError> {
+        let (watch, mine, store) = (watch(), folder.runs(shard), &folder.store);
         if self.fresh {
             store.remove(&mine.iter().map(|run| run.key.as_str()).collect())?;
         }
@@ -132,17 +126,11 @@ impl Run {
         if count < mine.len() {
             note!("{} of {} runs are stored already", mine.len() - count, mine.len());
         }
-        let jobs = self.jobs.map_or_else(default_jobs, usize::from);
         {
             let bar = Bar::new(evaluations, watch.clone());
-            experiment::run(
-                plan,
-                mine,
-                store,
-                jobs,
-                &watch,
-                &Lines { bar: &bar, plan, quiet: self.quiet },
-            )?;
+            let lines = Lines { bar: &bar, plan: &folder.plan, quiet: self.quiet };
+            let jobs = Some(self.jobs.map_or_else(default_jobs, usize::from));
+            folder.run(Options { jobs, shard }, &watch, &lines)?;
         }
         if watch.is_interrupted() {
             let stored = store.keys()?;
@@ -151,7 +139,7 @@ impl Run {
             return Err(CliError::Interrupted(format!(
                 "{stored} of {} runs are stored in {}; the same command{without} goes on from there",
                 mine.len(),
-                folder.display()
+                folder.path().display()
             )));
         }
         Ok(())
@@ -166,74 +154,6 @@ fn told(choice: ShardChoice) -> Result<Shard, CliError> {
         note!("shard {shard}, from {variable}");
     }
     Ok(shard)
-}
-
-/// Results of several experiments in one folder would leave all but one without their definition.
-fn check_folder(folder: &Path, name: &str) -> Result<(), CliError> {
-    let Ok(document) = Document::read(&folder.join(EXPERIMENT)) else { return Ok(()) };
-    match ExperimentFile::read(&document) {
-        Ok(before) if before.name != name => Err(CliError::Usage {
-            message: format!(
-                "{} holds the results of the experiment `{}`, expected those of `{name}`",
-                folder.display(),
-                before.name
-            ),
-            help: Some("choose another folder with --out".to_owned()),
-        }),
-        _ => Ok(()),
-    }
-}
-
-/// Keeps what the experiment was, so that it can be run again from its results.
-fn keep_inputs(
-    mut file: ExperimentFile,
-    document: &Document,
-    folder: &Path,
-) -> Result<(), CliError> {
-    let robot = file.task.as_ref().and_then(|task| task.robot_file(document));
-    if let Some(path) = robot {
-        let robot = RobotFile::read(&Document::read(&path)?)?;
-        keep(&folder.join("robot.toml"), &toml::to_string(&robot)?)?;
-        file.task = file.task.map(|task| task.with_robot("robot.toml"));
-    }
-    if keep(&folder.join(EXPERIMENT), &toml::to_string(&file)?)? {
-        note!(
-            "note: {} holds runs of another version of this experiment; they stay there, and those \
-             that no longer belong are left out of the summary",
-            folder.display()
-        );
-    }
-    Ok(())
-}
-
-/// Writes a text, unless it is there already: then other shards may be reading it. Whether another
-/// text gave way to it.
-fn keep(path: &Path, text: &str) -> Result<bool, CliError> {
-    let before = std::fs::read_to_string(path).ok();
-    if before.as_deref() == Some(text) {
-        check_writable(path)?;
-    } else {
-        write_file(path, text.as_bytes())?;
-    }
-    Ok(before.is_some_and(|before| before != text))
-}
-
-/// Says what is unphysical about an experiment's robot.
-pub(super) fn warn_of_robot(plan: &Plan) {
-    // A sweep has one robot.
-    if let Some(problem) = plan.instances.iter().find_map(Instance::reorientation) {
-        warn_of(&problem.task().robot);
-    }
-}
-
-/// Says when a comparison is not one at the same price.
-pub(super) fn warn_of_budgets(plan: &Plan) {
-    if plan.is_uneven() {
-        note!(
-            "warning: budgets differ within the field, so final costs do not compare; evaluations to a \
-             target do"
-        );
-    }
 }
 
 pub(super) fn default_jobs() -> usize {

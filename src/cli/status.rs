@@ -5,8 +5,9 @@ use polars::prelude::*;
 use serde::Serialize;
 
 use super::CliError;
-use super::results::{Results, ResultsFolder, command};
-use crate::analysis::{Failure, Standing, Tally, render, standing};
+use super::results::{ResultsFolder, command};
+use crate::analysis::render;
+use crate::experiment::{Failure, Folder, Standing, Tally, standing};
 
 /// Say which runs of an experiment are done, failed or missing
 #[derive(Debug, Args)]
@@ -43,6 +44,8 @@ struct StatusJson<'a> {
     all: Counts,
     /// Stored runs of no use to this experiment.
     others: usize,
+    /// Stored runs in another format than this version reads.
+    unread: usize,
     batches: usize,
     optimisers: Vec<EntrantJson<'a>>,
     failures: Vec<FailureJson<'a>>,
@@ -78,7 +81,7 @@ impl Status {
     }
 }
 
-fn json<'a>(results: &'a Results, standing: &'a Standing, batches: usize) -> StatusJson<'a> {
+fn json<'a>(results: &'a Folder, standing: &'a Standing, batches: usize) -> StatusJson<'a> {
     let plan = &results.plan;
     let entrant = |(optimiser, tally): (usize, &Tally)| EntrantJson {
         optimiser: &plan.optimisers[optimiser].label,
@@ -99,13 +102,14 @@ fn json<'a>(results: &'a Results, standing: &'a Standing, batches: usize) -> Sta
         experiment: &plan.name,
         all: standing.tallies.iter().copied().sum::<Tally>().into(),
         others: standing.others,
+        unread: standing.formats.values().sum(),
         batches,
         optimisers: standing.tallies.iter().enumerate().map(entrant).collect(),
         failures: standing.failures.iter().map(failure).collect(),
     }
 }
 
-fn tell(results: &Results, standing: &Standing, batches: usize) -> Result<(), CliError> {
+fn tell(results: &Folder, standing: &Standing, batches: usize) -> Result<(), CliError> {
     let (plan, tallies) = (&results.plan, &standing.tallies);
     let all: Tally = tallies.iter().copied().sum();
     let counts =
@@ -119,7 +123,7 @@ fn tell(results: &Results, standing: &Standing, batches: usize) -> Result<(), Cl
     )?;
     say!("{}", render(&table)?);
     say!(
-        "{}: {} of {} runs are stored, {} failed, {} missing; {batches} files a table",
+        "{}: {} of {} runs are stored, {} failed, {} missing; {batches} files per table",
         plan.name,
         all.stored,
         all.planned,
@@ -137,11 +141,14 @@ fn tell(results: &Results, standing: &Standing, batches: usize) -> Result<(), Cl
     if standing.failures.len() > MOST_SHOWN {
         say!("… and {} more failed; --json lists all", standing.failures.len() - MOST_SHOWN);
     }
+    if let Some(unread) = standing.unread() {
+        say!("{unread}");
+    }
     if standing.others > 0 {
         say!("{} other runs are stored: of another version of the experiment", standing.others);
     }
     if all.missing() > 0 {
-        say!("what is missing: {}", command(&results.folder));
+        say!("what is missing: {}", command(results));
     }
     Ok(())
 }

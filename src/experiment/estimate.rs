@@ -1,7 +1,6 @@
 //! How long an experiment takes, from a short trial of every optimiser.
 
 use std::collections::{BTreeMap, HashMap};
-use std::num::NonZeroUsize;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -9,8 +8,9 @@ use std::time::{Duration, Instant};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 use super::caught::caught;
-use super::{Plan, RunError, RunSpec};
-use crate::optimiser::{Scp, Settings};
+use super::plan::{Plan, RunSpec};
+use super::runner::RunError;
+use crate::optimiser::Optimiser;
 use crate::search::{Oracle, Rng, Watch};
 
 /// What all trials may take together, on each thread.
@@ -35,7 +35,8 @@ pub fn estimate(plan: &Plan, jobs: usize) -> Result<Duration, RunError> {
     let trials = choose(plan);
     let weights = trials.iter().map(|run| weight(plan, run)).sum::<u32>().max(1);
     let share = ALLOWANCE * u32::try_from(jobs).unwrap_or(u32::MAX).min(1024) / weights;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
+    let pool = pool.map_err(|error| RunError::Threads(error.to_string()))?;
     let seconds: Vec<f64> = pool.install(|| {
         let timed = |run: &&RunSpec| attempt(plan, run, (share * weight(plan, run)).min(LONGEST));
         trials.par_iter().map(timed).collect()
@@ -58,18 +59,18 @@ pub fn estimate(plan: &Plan, jobs: usize) -> Result<Duration, RunError> {
 
 /// What runs have in common that take about as long: optimiser, kind of problem, number of variables
 /// and budget.
-type Kind<'a> = (usize, &'a str, usize, u64);
+type Alike<'a> = (usize, &'a str, usize, u64);
 
-fn kind<'a>(plan: &'a Plan, run: &RunSpec) -> Kind<'a> {
+fn kind<'a>(plan: &'a Plan, run: &RunSpec) -> Alike<'a> {
     let instance = &plan.instances[run.instance];
-    let formulation = plan.optimisers[run.optimiser].settings.formulation();
-    let variables = instance.problem(formulation).bounds().len();
+    let problem = instance.subject.problem(&plan.optimisers[run.optimiser].space(instance));
+    let variables = problem.map_or(0, |problem| problem.bounds().len());
     (run.optimiser, instance.subject.name(), variables, run.budget)
 }
 
 /// A few runs of every kind, with the first seed, spread evenly over the kind's instances.
 fn choose(plan: &Plan) -> Vec<&RunSpec> {
-    let mut kinds: BTreeMap<Kind<'_>, Vec<&RunSpec>> = BTreeMap::new();
+    let mut kinds: BTreeMap<Alike<'_>, Vec<&RunSpec>> = BTreeMap::new();
     for run in plan.runs.iter().filter(|run| run.seed == 1) {
         kinds.entry(kind(plan, run)).or_default().push(run);
     }
@@ -83,8 +84,8 @@ fn spread<'a>(runs: &[&'a RunSpec]) -> Vec<&'a RunSpec> {
 }
 
 fn weight(plan: &Plan, run: &RunSpec) -> u32 {
-    let optimiser = plan.optimisers[run.optimiser].settings.optimiser();
-    if optimiser.needs_derivatives() { WITH_DERIVATIVES } else { 1 }
+    let needs_derivatives = plan.optimisers[run.optimiser].needs_derivatives;
+    if needs_derivatives { WITH_DERIVATIVES } else { 1 }
 }
 
 /// Seconds that a run takes, as far as so much time tells.
@@ -107,21 +108,19 @@ fn attempt(plan: &Plan, run: &RunSpec, time: Duration) -> f64 {
 /// Seconds that a run takes, judged when it ends or is interrupted. A run of many starts is made one
 /// start at a time, to see how long each takes.
 fn projected(plan: &Plan, run: &RunSpec, watch: &Watch) -> f64 {
-    let settings = &plan.optimisers[run.optimiser].settings;
-    let (part, parts) = match settings {
-        Settings::Scp(scp) => {
-            let one = Scp { starts: Some(NonZeroUsize::MIN), ..scp.clone() };
-            (Settings::Scp(one), scp.random_starts())
-        }
-        whole => (whole.clone(), 1),
-    };
-    let problem = plan.instances[run.instance].problem(settings.formulation());
+    let (instance, entrant) = (&plan.instances[run.instance], &plan.optimisers[run.optimiser]);
+    let problem = instance.subject.problem(&entrant.space(instance));
+    // What cannot be run takes no time.
+    let (Ok(whole), Ok(problem)) = (entrant.optimiser(), problem) else { return 0.0 };
+    let split = whole.parts();
+    let (part, parts): (&dyn Optimiser, usize) =
+        split.as_ref().map_or((whole, 1), |(part, parts)| (&**part, *parts));
     let started = Instant::now();
     let (mut done, mut evaluations, mut seconds) = (0, 0, 0.0);
     for seed in (1..).take(parts) {
         let mut oracle = Oracle::new(&*problem, run.budget - evaluations, watch);
         // A run that panics takes as long as until then.
-        let _ = caught(|| part.optimiser().minimise(&mut oracle, &mut Rng::new(seed)));
+        let _ = caught(|| part.minimise(&mut oracle, &mut Rng::new(seed)));
         evaluations += oracle.evaluations();
         if watch.is_interrupted() {
             let spent = run.budget as f64 / evaluations.max(1) as f64;

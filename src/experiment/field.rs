@@ -7,98 +7,162 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::ops::Range;
 
-use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
 
-use super::{BudgetTable, Entrant};
+use super::budget::BudgetTable;
+use super::entrant::{Entrant, OutsideTable};
+use super::instance::Instance;
 use crate::input::{Document, InputError, nearest, optional_count};
 use crate::optimiser::Settings;
 
 /// One optimiser of the field: an `[[optimiser]]` table, or one combination of its `sweep`.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
-pub struct EntrantTable {
+pub(super) struct EntrantTable {
     /// Optimiser and settings.
-    pub settings: Spanned<Settings>,
+    #[serde(default)]
+    settings: Option<Spanned<Settings>>,
+    /// An optimiser of another program instead.
+    #[serde(default)]
+    outside: Option<Spanned<OutsideTable>>,
     /// What to call it instead of its name and formulation.
     #[serde(default)]
-    pub label: Option<Spanned<String>>,
+    label: Option<Spanned<String>>,
     /// Number of seeds, instead of the experiment's.
     #[serde(default, deserialize_with = "optional_count::<1, 1_000_000, _, _>")]
-    pub seeds: Option<NonZeroU64>,
+    seeds: Option<NonZeroU64>,
     /// What each of its runs may spend, instead of the experiment's budget.
     #[serde(default)]
-    pub budget: Option<Spanned<BudgetTable>>,
+    budget: Option<Spanned<BudgetTable>>,
 }
 
 /// The keys that stand beside an optimiser.
 const BESIDE: [&str; 3] = ["label", "seeds", "budget"];
 
+/// The key of an optimiser of another program.
+const OUTSIDE: &str = "outside";
+
 /// The key of a sweep, which is gone when the field is spelt out.
 const SWEEP: &str = "sweep";
 
-impl Serialize for EntrantTable {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        /// The table as one writes it.
-        #[derive(Serialize)]
-        struct Written<'a> {
-            #[serde(skip_serializing_if = "Option::is_none")]
-            label: &'a Option<Spanned<String>>,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            seeds: Option<NonZeroU64>,
-            #[serde(flatten)]
-            settings: &'a Settings,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            budget: &'a Option<Spanned<BudgetTable>>,
-        }
-        let Self { settings, label, seeds, budget } = self;
-        let settings = settings.get_ref();
-        Written { label, seeds: *seeds, settings, budget }.serialize(serializer)
+/// An entrant and where its table, label and budget stand.
+#[derive(Debug, Clone)]
+pub(super) struct Entry {
+    pub(super) entrant: Entrant,
+    pub(super) place: Range<usize>,
+    pub(super) label_place: Option<Range<usize>>,
+    pub(super) budget_place: Option<Range<usize>>,
+}
+
+impl From<Entrant> for Entry {
+    fn from(entrant: Entrant) -> Self {
+        Self { entrant, place: 0..0, label_place: None, budget_place: None }
     }
 }
 
-impl From<Settings> for EntrantTable {
-    fn from(settings: Settings) -> Self {
-        let settings = Spanned::new(0..0, settings);
-        Self { settings, label: None, seeds: None, budget: None }
+impl EntrantTable {
+    /// The entrant that the table asks for.
+    pub(super) fn entry(self, document: &Document) -> Result<Entry, InputError> {
+        let Self { settings, outside, label, seeds, budget } = self;
+        let (entrant, place) = match (settings, outside) {
+            (Some(settings), _) => {
+                let place = settings.span();
+                (Entrant::from(settings.into_inner()), place)
+            }
+            (None, Some(outside)) => {
+                let place = outside.span();
+                (outside.into_inner().entrant(document)?, place)
+            }
+            (None, None) => return Err(no_optimiser(0..0, document)),
+        };
+        let label_place = label.as_ref().map(Spanned::span);
+        let budget_place = budget.as_ref().map(Spanned::span);
+        let entrant = match label {
+            Some(label) => entrant.labelled(label.get_ref()),
+            None => entrant,
+        };
+        let budget = budget.map(|budget| budget.get_ref().evaluations);
+        Ok(Entry {
+            entrant: Entrant { seeds, budget, ..entrant },
+            place,
+            label_place,
+            budget_place,
+        })
     }
 }
 
-/// Labels the field: the label given, or optimiser and, on the task, formulation; with the settings
-/// that differ from the default and a budget of its own where the field has these more than once.
-pub(super) fn entrants(field: &[EntrantTable], on_task: bool) -> Vec<Entrant> {
-    let plain = |table: &EntrantTable| {
-        let settings = table.settings.get_ref();
-        match &table.label {
-            Some(label) => label.get_ref().clone(),
-            None if on_task => format!("{}/{}", settings.title(), settings.formulation().name()),
-            None => settings.title(),
+/// An entrant as one writes it.
+#[derive(Serialize)]
+pub(super) struct WrittenEntrant<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    label: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seeds: Option<NonZeroU64>,
+    #[serde(flatten)]
+    settings: Option<&'a Settings>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outside: Option<OutsideTable>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    budget: Option<BudgetTable>,
+}
+
+impl<'a> WrittenEntrant<'a> {
+    pub(super) fn of(entrant: &'a Entrant) -> Self {
+        Self {
+            label: entrant.is_labelled.then_some(&*entrant.label),
+            seeds: entrant.seeds,
+            settings: entrant.catalogued.as_ref(),
+            outside: entrant.catalogued.is_none().then(|| OutsideTable::of(entrant)),
+            budget: entrant.budget.map(|evaluations| BudgetTable { evaluations }),
         }
+    }
+}
+
+/// Labels the field: the label given, or optimiser and, on subjects with several formulations, formulation; with the
+/// settings that differ from the default and a budget of its own where the field has these more than
+/// once.
+pub(super) fn labelled(field: &[Entry], instances: &[Instance]) -> Vec<Entrant> {
+    let formulated = instances.iter().find(|instance| !instance.subject.spaces().is_empty());
+    let plain = |entrant: &Entrant| match formulated {
+        Some(instance) if !entrant.is_labelled => {
+            format!("{}/{}", entrant.label, entrant.space(instance))
+        }
+        _ => entrant.label.clone(),
     };
     let mut count = HashMap::new();
-    for table in field {
-        *count.entry(plain(table)).or_insert(0) += 1;
+    for entry in field {
+        *count.entry(plain(&entry.entrant)).or_insert(0) += 1;
     }
-    let entrant = |table: &EntrantTable| {
-        let (mut label, settings) = (plain(table), table.settings.get_ref().clone());
-        let budget = table.budget.as_ref().map(|budget| budget.get_ref().evaluations);
+    let label = |entry: &Entry| {
+        let entrant = entry.entrant.clone();
+        let mut label = plain(&entrant);
         if count[&label] > 1 {
-            let own = budget.map(|evaluations| format!("budget={evaluations}"));
-            for part in settings.changed().into_iter().chain(own) {
+            let changed = entrant.catalogued.as_ref().map_or_else(Vec::new, Settings::changed);
+            let own = entrant.budget.map(|evaluations| format!("budget={evaluations}"));
+            for part in changed.into_iter().chain(own) {
                 label += " ";
                 label += &part;
             }
         }
-        Entrant { label, settings, seeds: table.seeds, budget }
+        Entrant { label, ..entrant }
     };
-    field.iter().map(entrant).collect()
+    field.iter().map(label).collect()
+}
+
+fn no_optimiser(place: Range<usize>, document: &Document) -> InputError {
+    let message = "found no optimiser, expected one with its settings, such as `pso = {}`";
+    document.error_at(place, message, None)
 }
 
 /// Makes of every `[[optimiser]]` table one for each combination of its `sweep`, with the optimiser in
 /// a table of its own, as [`EntrantTable`] reads it.
-pub(super) fn spell_out(file: &mut DeTable<'_>, document: &Document) -> Result<(), InputError> {
+pub(super) fn spell_out(
+    file: &mut DeTable<'_>,
+    spaces: &[&str],
+    document: &Document,
+) -> Result<(), InputError> {
     let field = file.get_mut("optimiser").map(Spanned::get_mut);
     let Some(DeValue::Array(field)) = field else {
         return Ok(());
@@ -109,6 +173,7 @@ pub(super) fn spell_out(file: &mut DeTable<'_>, document: &Document) -> Result<(
             DeValue::Table(table) => {
                 let (beside, choices) = combinations(table.clone(), entry.span(), document)?;
                 for choice in choices {
+                    check_formulations(&choice, spaces, document)?;
                     spelt_out.push(entrant_table(beside.clone(), choice, entry.span()));
                 }
             }
@@ -124,8 +189,10 @@ fn entrant_table<'i>(
     choice: DeTable<'i>,
     span: Range<usize>,
 ) -> Spanned<DeValue<'i>> {
-    let choice = Spanned::new(span.clone(), DeValue::Table(choice));
-    beside.insert(Spanned::new(span.clone(), "settings".into()), choice);
+    if !choice.is_empty() {
+        let choice = Spanned::new(span.clone(), DeValue::Table(choice));
+        beside.insert(Spanned::new(span.clone(), "settings".into()), choice);
+    }
     Spanned::new(span, DeValue::Table(beside))
 }
 
@@ -138,12 +205,14 @@ fn combinations<'i>(
     let sweep = table.remove(SWEEP);
     let (mut beside, mut choice) = (DeTable::new(), DeTable::new());
     for (key, value) in table {
-        let is_beside = BESIDE.contains(&key.get_ref().as_ref());
+        let is_beside = BESIDE.contains(&key.get_ref().as_ref()) || *key.get_ref() == *OUTSIDE;
         (if is_beside { &mut beside } else { &mut choice }).insert(key, value);
     }
     if choice.is_empty() {
-        let message = "found no optimiser, expected one with its settings, such as `pso = {}`";
-        return Err(document.error_at(span, message, None));
+        return match beside.contains_key(OUTSIDE) {
+            true => Ok((beside, vec![choice])),
+            false => Err(no_optimiser(span, document)),
+        };
     }
     check_choice(&choice, document)?;
     let mut choices = vec![choice];
@@ -155,6 +224,31 @@ fn combinations<'i>(
         }
     }
     Ok((beside, choices))
+}
+
+/// Whether every formulation asked for, at any depth, is one that the subjects have.
+fn check_formulations(
+    table: &DeTable<'_>,
+    spaces: &[&str],
+    document: &Document,
+) -> Result<(), InputError> {
+    for (key, value) in table {
+        match value.get_ref() {
+            DeValue::Table(inner) => check_formulations(inner, spaces, document)?,
+            DeValue::String(found) if *key.get_ref() == *"formulation" && !spaces.is_empty() => {
+                if !spaces.contains(&found.as_ref()) {
+                    let known = spaces.iter().map(|space| format!("`{space}`"));
+                    let known = known.collect::<Vec<_>>().join(", ");
+                    let message = format!("unknown formulation `{found}`, expected one of {known}");
+                    let help = nearest(found, spaces.iter().copied());
+                    let help = help.map(|near| format!("did you mean `{near}`?"));
+                    return Err(document.error_at(value.span(), message, help));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Whether a table has but one optimiser.

@@ -1,134 +1,90 @@
-//! What the runs of an experiment minimise.
+//! One problem of an experiment.
 
 use std::fmt;
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
 use super::caught::caught;
-use crate::reorientation::{Assessment, BestKnown, Boxes, Formulated, Formulation, Reorientation};
+use super::plain::Plain;
+use super::subject::{Subject, Value};
 use crate::search::Problem;
 
 /// One problem of an experiment.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
+#[non_exhaustive]
 pub struct Instance {
     /// What tells it from the others, such as `weight_base=0.5 terms=4`; empty where there is but one.
     pub label: String,
     /// What it shares with those it is summarised and drawn with; the label where there are none.
     pub group: String,
-    /// The problem.
-    pub subject: Subject,
+    /// The group as charts write it.
+    pub title: String,
+    /// The settings that a sweep has given it.
+    pub coordinates: Vec<Coordinate>,
+    /// What is minimised.
+    pub subject: Arc<dyn Subject>,
     /// Evaluations that each run may spend, instead of the experiment's budget.
     pub budget: Option<NonZeroU64>,
     /// Costs that runs are asked to reach.
     pub targets: Vec<f64>,
 }
 
-/// The two kinds of problems.
-#[derive(Clone)]
-pub enum Subject {
-    /// The reorientation task, in the variables of each optimiser's formulation.
-    Task {
-        /// The task over its family.
-        problem: Arc<Reorientation>,
-        /// Where to search.
-        boxes: Boxes,
-    },
-    /// Any other problem, in its own variables.
-    Other {
-        /// Together with the instance's label it says which problem this is: a stored run with the
-        /// same of both is taken for a run on the same problem.
-        name: String,
-        /// The problem.
-        problem: Arc<dyn Problem + Send + Sync>,
-    },
+/// A setting and its value on one instance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coordinate {
+    /// The setting.
+    pub setting: String,
+    /// Its value.
+    pub value: Value,
 }
 
-impl fmt::Debug for Subject {
+impl fmt::Debug for Instance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl Subject {
-    /// The problem's name.
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Task { .. } => "reorientation",
-            Self::Other { name, .. } => name,
-        }
+        let mut shown = f.debug_struct("Instance");
+        shown.field("label", &self.label).field("subject", &self.subject.name());
+        shown.finish_non_exhaustive()
     }
 }
 
 impl Instance {
-    /// The reorientation task.
-    pub fn task(label: String, problem: Arc<Reorientation>, boxes: Boxes) -> Self {
-        let subject = Subject::Task { problem, boxes };
-        Self { group: label.clone(), label, subject, budget: None, targets: Vec::new() }
-    }
-
-    /// Any other problem.
-    pub fn other(label: &str, name: &str, problem: Arc<dyn Problem + Send + Sync>) -> Self {
-        let subject = Subject::Other { name: name.to_owned(), problem };
-        let (label, group) = (label.to_owned(), label.to_owned());
-        Self { label, group, subject, budget: None, targets: Vec::new() }
-    }
-
-    /// Whether this is the reorientation task.
-    pub fn is_task(&self) -> bool {
-        self.reorientation().is_some()
-    }
-
-    /// The reorientation task, if this is one.
-    pub fn reorientation(&self) -> Option<&Reorientation> {
-        match &self.subject {
-            Subject::Task { problem, .. } => Some(problem),
-            Subject::Other { .. } => None,
+    /// An instance on a subject.
+    pub fn new(label: impl Into<String>, subject: Arc<dyn Subject>) -> Self {
+        let label = label.into();
+        Self {
+            group: label.clone(),
+            title: label.clone(),
+            label,
+            coordinates: Vec::new(),
+            subject,
+            budget: None,
+            targets: Vec::new(),
         }
     }
 
-    /// The cost in the middle of the box: on the task, that of the motion without bumps, as fast as the limits
-    /// allow. No number where the problem panics there.
-    pub fn centre_cost(&self) -> f64 {
-        let problem = self.problem(Formulation::TimeFree);
-        let centre: Vec<f64> = problem.bounds().iter().map(|[a, b]| a + 0.5 * (b - a)).collect();
-        caught(|| problem.evaluate(&centre).cost).unwrap_or(f64::NAN)
+    /// An instance on a problem of one's own, with the name as label. `identity` is all that determines its costs,
+    /// a version of its code included: see [`Subject::identity`].
+    pub fn of_problem(
+        name: &str,
+        identity: impl Into<serde_json::Value>,
+        problem: impl Problem + 'static,
+    ) -> Self {
+        Self::new(name, Arc::new(Plain::new(name, identity.into(), Arc::new(problem))))
     }
 
-    /// The number of variables, whatever the optimiser's formulation, so that formulations of one task
-    /// compare: for the task that of the paper's, free coefficients and duration.
-    pub fn dimension(&self) -> usize {
-        match &self.subject {
-            Subject::Task { problem, .. } => problem.family().dimension() + 1,
-            Subject::Other { problem, .. } => problem.bounds().len(),
-        }
+    /// With costs that runs are asked to reach.
+    #[must_use]
+    pub fn with_targets(self, targets: impl Into<Vec<f64>>) -> Self {
+        Self { targets: targets.into(), ..self }
     }
 
-    /// The least cost known: the best motion's for the task, the least of all for a problem that tells it.
-    pub fn known_cost(&self) -> Option<f64> {
-        match &self.subject {
-            Subject::Task { problem, .. } => BestKnown::of(problem).map(|known| known.j),
-            Subject::Other { problem, .. } => problem.least_cost(),
-        }
+    /// The cost in the middle of the box; NaN where the problem panics there.
+    pub(crate) fn start_cost(&self) -> f64 {
+        caught(|| self.subject.start_cost()).unwrap_or(f64::NAN)
     }
 
-    /// The problem as an optimiser with this formulation sees it.
-    pub fn problem(&self, formulation: Formulation) -> Arc<dyn Problem + Send + Sync> {
-        match &self.subject {
-            Subject::Task { problem, boxes } => {
-                Arc::new(Formulated::new(formulation, problem.clone(), boxes))
-            }
-            Subject::Other { problem, .. } => problem.clone(),
-        }
-    }
-
-    /// The motion that a point stands for, evaluated finely: its coefficients and what is known of
-    /// it. A problem that is no task has none.
-    pub fn certify(&self, formulation: Formulation, x: &[f64]) -> Option<(Vec<f64>, Assessment)> {
-        match &self.subject {
-            Subject::Task { problem, boxes } => {
-                Some(Formulated::new(formulation, problem.clone(), boxes).certify(x))
-            }
-            Subject::Other { .. } => None,
-        }
+    /// The value of a setting of the sweep.
+    pub fn coordinate(&self, setting: &str) -> Option<&Value> {
+        let found = self.coordinates.iter().find(|coordinate| coordinate.setting == setting);
+        found.map(|coordinate| &coordinate.value)
     }
 }

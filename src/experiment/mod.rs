@@ -1,27 +1,39 @@
-//! From an experiment file to stored runs: config, plan, runner, store.
+//! From an experiment to stored runs: file, plan, runner, store.
 
+mod budget;
 mod caught;
-mod config;
+mod entrant;
 mod estimate;
 mod field;
+mod file;
+mod folder;
 mod instance;
+mod kind;
+mod plain;
 mod plan;
-mod poses;
 mod record;
+mod run;
 mod runner;
+pub mod schema;
 mod shard;
+mod standing;
 mod store;
-mod sweep;
+mod stored;
+mod subject;
 mod targets;
 
-pub use config::{BudgetTable, Evaluations, ExperimentFile, Sweep};
+pub use entrant::Entrant;
 pub use estimate::estimate;
-pub use field::EntrantTable;
-pub use instance::{Instance, Subject};
-pub use plan::{Entrant, Plan, RunSpec};
-pub use poses::RandomPoses;
+pub use file::Experiment;
+pub use folder::{Folder, FolderError, Options};
+pub use instance::{Coordinate, Instance};
+pub use kind::{Kind, Registry, Source, written};
+pub use plan::{Plan, RunSpec};
 pub use record::{Record, Status};
+pub use run::{Improvement, Run, best_run, best_runs, load};
 pub use runner::{Progress, RunError, run};
 pub use shard::{Shard, ShardChoice, ShardError};
+pub use standing::{Failure, Standing, Tally, standing};
 pub use store::{Compaction, Store, StoreError};
+pub use subject::{Judgement, Quantity, Subject, Unavailable, Value, ValueKind};
 pub use targets::TargetTable;

@@ -4,25 +4,26 @@ use std::collections::{HashMap, HashSet};
 use std::num::NonZeroU64;
 
 use serde::Serialize;
-use toml::Spanned;
 
-use super::field::entrants;
-use super::record::FORMAT;
-use super::{EntrantTable, ExperimentFile, Instance, Subject, TargetTable, sweep};
+use super::entrant::Entrant;
+use super::field::{Entry, labelled};
+use super::file::Experiment;
+use super::instance::Instance;
+use super::schema::FORMAT;
+use super::subject::Quantity;
+use super::targets::TargetTable;
 use crate::digest::digest;
 use crate::input::{Document, InputError};
-use crate::optimiser::Settings;
-use crate::reorientation::{Accuracy, Boxes};
-use crate::task::Task;
 
 /// Raised when a change makes the same run give another result.
-const RESULT_VERSION: u32 = 4;
+const RESULT_VERSION: u32 = 5;
 
 /// Most runs of an experiment; each takes some kilobytes until all are done.
 const MOST_RUNS: u64 = 1_000_000;
 
 /// An experiment spelt out.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Plan {
     /// The experiment's name.
     pub name: String,
@@ -32,25 +33,15 @@ pub struct Plan {
     pub optimisers: Vec<Entrant>,
     /// All runs, instance by instance, optimiser by optimiser, seed by seed.
     pub runs: Vec<RunSpec>,
-}
-
-/// One optimiser of the field.
-#[derive(Debug, Clone)]
-pub struct Entrant {
-    /// The label given, or optimiser and, on the task, formulation; with changed settings where the
-    /// field has these more than once.
-    pub label: String,
-    /// The settings.
-    pub settings: Settings,
-    /// Number of seeds, instead of the experiment's.
-    pub seeds: Option<NonZeroU64>,
-    /// Evaluations that each of its runs may spend, instead of the experiment's or the instance's
-    /// budget.
-    pub budget: Option<NonZeroU64>,
+    /// The experiment that is spelt out.
+    pub experiment: Experiment,
+    facts: Vec<Quantity>,
+    measures: Vec<Quantity>,
 }
 
 /// One optimiser on one instance with one seed.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RunSpec {
     /// Hash of the recipe.
     pub key: String,
@@ -66,86 +57,181 @@ pub struct RunSpec {
     pub budget: u64,
 }
 
-impl Plan {
-    /// Spells an experiment out. Two runs that would be the same are a mistake.
-    pub fn new(file: &ExperimentFile, document: &Document) -> Result<Self, InputError> {
-        let mut instances = match file {
-            ExperimentFile { functions: Some(functions), .. } => {
-                check_field(file.optimiser.get_ref(), document)?;
-                functions.instances(document)?
-            }
-            ExperimentFile { task: Some(task), trajectory: Some(trajectory), sweep, .. } => {
-                sweep::instances(task, trajectory, sweep, document)?
-            }
-            // Reading a file fills in what it leaves out.
-            _ => Vec::new(),
+impl Experiment {
+    /// Spells the experiment out. Two runs that would be the same are a mistake.
+    pub fn plan(&self) -> Result<Plan, InputError> {
+        let document = &self.document;
+        let mut instances = match &self.source {
+            Some(source) => source.instances(document)?,
+            None => Vec::new(),
         };
-        if let Some(targets) = &file.targets {
+        instances.extend(self.instances.iter().cloned());
+        if instances.is_empty() {
+            let message = "found nothing to minimise, expected at least one instance";
+            return Err(document.error_at(0..0, message, None));
+        }
+        self.field.iter().try_for_each(|entry| check_entry(entry, &instances, document))?;
+        if let Some(targets) = &self.targets {
             TargetTable::give(targets, &mut instances, document)?;
         }
-        check_budgets(file, document)?;
-        let field = file.optimiser.get_ref();
-        let seeds = field.iter().map(|table| table.seeds.unwrap_or(file.seeds).get()).sum::<u64>();
+        self.check_budgets()?;
+        let seeds = |entry: &Entry| entry.entrant.seeds.unwrap_or(self.seeds).get();
+        let seeds = self.field.iter().map(seeds).fold(0, u64::saturating_add);
         let count = seeds.saturating_mul(instances.len() as u64);
         if count > MOST_RUNS {
             let message = format!("found {count} runs, expected {MOST_RUNS} at most");
             let help = "make several experiments of it".to_owned();
-            return Err(document.error_at(file.optimiser.span(), message, Some(help)));
+            return Err(document.error_at(self.field_place.clone(), message, Some(help)));
         }
-        let plan = Self::of(&file.name, instances, field, file.seeds, file.budget.evaluations);
+        let optimisers = labelled(&self.field, &instances);
+        let runs = runs(&instances, &optimisers, self.seeds, self.budget);
         let mut keys = HashSet::new();
-        if let Some(twin) = plan.runs.iter().find(|run| !keys.insert(&run.key)) {
+        if let Some(twin) = runs.iter().find(|run| !keys.insert(&run.key)) {
             let message = format!(
                 "{} stands twice with the same settings, or a list of the sweep or of the functions repeats a value",
-                plan.optimisers[twin.optimiser].label
+                optimisers[twin.optimiser].label
             );
-            return Err(document.error_at(file.optimiser.span(), message, None));
+            return Err(document.error_at(self.field_place.clone(), message, None));
         }
-        check_labels(&plan, field, document)?;
-        Ok(plan)
+        check_instances(&instances, document)?;
+        self.check_labels(&optimisers)?;
+        let experiment = self.clone().with_targets(&instances);
+        let subjects = || instances.iter().map(|instance| &instance.subject);
+        let facts = unlike(subjects().flat_map(|s| s.facts()).map(|(quantity, _)| quantity));
+        let measures = unlike(subjects().flat_map(|s| s.measures()));
+        let name = self.name.clone();
+        Ok(Plan { name, instances, optimisers, runs, experiment, facts, measures })
     }
 
-    /// Every optimiser of the field on every instance, for seeds 1, 2, … up to `seeds`, with `budget`
-    /// evaluations a run.
-    pub fn over(
-        name: &str,
-        instances: Vec<Instance>,
-        field: &[Settings],
-        seeds: NonZeroU64,
-        budget: NonZeroU64,
-    ) -> Self {
-        let field: Vec<EntrantTable> = field.iter().cloned().map(EntrantTable::from).collect();
-        Self::of(name, instances, &field, seeds, budget)
+    /// Whether budgets are set in one way only: for each optimiser, or for each instance.
+    fn check_budgets(&self) -> Result<(), InputError> {
+        let own = self.field.iter().find_map(|entry| entry.budget_place.clone());
+        let sets_budgets = self.source.as_ref().is_some_and(|source| source.sets_budgets());
+        match own.filter(|_| sets_budgets) {
+            Some(place) => {
+                let message = "found a budget of an optimiser's own beside a sweep of budgets, expected one of them";
+                Err(self.document.error_at(place, message, None))
+            }
+            None => Ok(()),
+        }
     }
 
-    fn of(
-        name: &str,
-        instances: Vec<Instance>,
-        field: &[EntrantTable],
-        seeds: NonZeroU64,
-        budget: NonZeroU64,
-    ) -> Self {
-        let optimisers = entrants(field, instances.iter().any(Instance::is_task));
-        let mut runs = Vec::new();
-        for (i, instance) in instances.iter().enumerate() {
-            for (o, entrant) in optimisers.iter().enumerate() {
-                let budget = entrant.budget.or(instance.budget).unwrap_or(budget).get();
-                runs.extend((1..=entrant.seeds.unwrap_or(seeds).get()).map(|seed| {
-                    let recipe = recipe(instance, &entrant.settings, seed, budget);
-                    RunSpec {
-                        key: digest(&recipe),
-                        recipe,
-                        instance: i,
-                        optimiser: o,
-                        seed,
-                        budget,
-                    }
-                }));
+    /// Whether labels tell the optimisers apart.
+    fn check_labels(&self, optimisers: &[Entrant]) -> Result<(), InputError> {
+        let mut labels = HashSet::new();
+        for (entrant, entry) in optimisers.iter().zip(&self.field) {
+            if entrant.label.is_empty() || !labels.insert(&entrant.label) {
+                let message = format!(
+                    "found label `{}`, expected one that tells this optimiser from the others",
+                    entrant.label
+                );
+                let place = entry.label_place.clone().unwrap_or_else(|| entry.place.clone());
+                return Err(self.document.error_at(place, message, None));
             }
         }
-        Self { name: name.to_owned(), instances, optimisers, runs }
+        Ok(())
     }
+}
 
+/// Whether labels tell the instances apart.
+fn check_instances(instances: &[Instance], document: &Document) -> Result<(), InputError> {
+    let mut labels = HashSet::new();
+    match instances.iter().find(|instance| !labels.insert(&instance.label)) {
+        Some(twin) => {
+            let message = format!(
+                "found two instances labelled `{}`, expected labels that tell them apart",
+                twin.label
+            );
+            Err(document.error_at(0..0, message, None))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Whether an optimiser can search every instance: whether it has the formulation asked for and, where need be,
+/// derivatives.
+fn check_entry(entry: &Entry, all: &[Instance], document: &Document) -> Result<(), InputError> {
+    let Entry { entrant, place, .. } = entry;
+    let error = |message: String| Err(document.error_at(place.clone(), message, None));
+    for instance in all {
+        let (name, spaces) = (instance.subject.name(), instance.subject.spaces());
+        if let Some(asked) = entrant.formulation.as_ref().filter(|asked| !spaces.contains(asked)) {
+            return error(match spaces.is_empty() {
+                true => format!("found the formulation `{asked}`, which `{name}` does not have"),
+                false => format!(
+                    "found the formulation `{asked}`, expected one of `{name}`: {}",
+                    spaces.join(", ")
+                ),
+            });
+        }
+        let space = entrant.space(instance);
+        let lacks = entrant.needs_derivatives
+            && instance.subject.problem(&space).is_ok_and(|p| p.composite().is_none());
+        if lacks {
+            let of = if space.is_empty() { String::new() } else { format!(" in `{space}`") };
+            return error(format!(
+                "`{}` needs derivatives, which `{name}`{of} does not give",
+                entrant.kind
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn runs(
+    instances: &[Instance],
+    optimisers: &[Entrant],
+    seeds: NonZeroU64,
+    budget: NonZeroU64,
+) -> Vec<RunSpec> {
+    let mut runs = Vec::new();
+    for (i, instance) in instances.iter().enumerate() {
+        let subject = identity(instance);
+        for (o, entrant) in optimisers.iter().enumerate() {
+            let budget = entrant.budget.or(instance.budget).unwrap_or(budget).get();
+            let (optimiser, space) = (entrant.identity(), entrant.space(instance));
+            runs.extend((1..=entrant.seeds.unwrap_or(seeds).get()).map(|seed| {
+                let recipe = Recipe {
+                    format: FORMAT,
+                    version: RESULT_VERSION,
+                    subject: &subject,
+                    formulation: &space,
+                    optimiser: &optimiser,
+                    seed,
+                    evaluations: budget,
+                };
+                let recipe = serde_json::to_string(&recipe).unwrap_or_default();
+                let key = digest(&recipe);
+                RunSpec { key, recipe, instance: i, optimiser: o, seed, budget }
+            }));
+        }
+    }
+    runs
+}
+
+/// Everything that determines a run's result.
+#[derive(Serialize)]
+struct Recipe<'a> {
+    format: u64,
+    version: u32,
+    subject: &'a serde_json::Value,
+    formulation: &'a str,
+    optimiser: &'a serde_json::Value,
+    seed: u64,
+    evaluations: u64,
+}
+
+/// Which problem an instance is.
+fn identity(instance: &Instance) -> serde_json::Value {
+    let subject = &instance.subject;
+    serde_json::json!({
+        "kind": subject.kind(),
+        "name": subject.name(),
+        "identity": subject.identity(),
+    })
+}
+
+impl Plan {
     /// Whether some optimisers may spend more than others on the same instance.
     pub fn is_uneven(&self) -> bool {
         let mut pairs = self.runs.iter().zip(self.runs.iter().skip(1));
@@ -156,8 +242,7 @@ impl Plan {
     pub fn problems(&self) -> Vec<usize> {
         let mut first = HashMap::new();
         let same = |(i, instance): (usize, &Instance)| {
-            let identity = serde_json::to_string(&identity(instance)).unwrap_or_default();
-            *first.entry(identity).or_insert(i)
+            *first.entry(identity(instance).to_string()).or_insert(i)
         };
         self.instances.iter().enumerate().map(same).collect()
     }
@@ -167,104 +252,48 @@ impl Plan {
         self.runs.iter().enumerate().map(|(i, run)| (run.key.as_str(), i)).collect()
     }
 
-    /// The letter for costs: the paper's `J` where its task is among the instances.
-    pub fn cost_symbol(&self) -> &'static str {
-        if self.instances.iter().any(Instance::is_task) { "J" } else { "f" }
+    /// The letter for costs: that of the first subject that has one of its own.
+    pub fn cost_symbol(&self) -> &str {
+        let mut symbols = self.instances.iter().map(|instance| instance.subject.cost_symbol());
+        symbols.find(|symbol| *symbol != "f").unwrap_or("f")
     }
-}
 
-/// Whether every optimiser of a field can search test functions: those have no derivatives, and
-/// none of the task's formulations.
-fn check_field(field: &[EntrantTable], document: &Document) -> Result<(), InputError> {
-    for EntrantTable { settings: spanned, .. } in field {
-        let settings = spanned.get_ref();
-        let name = settings.name();
-        let default = Settings::by_name(name).map(|default| default.formulation());
-        let message = if settings.optimiser().needs_derivatives() {
-            format!("`{name}` needs derivatives, which test functions do not give")
-        } else if default != Some(settings.formulation()) {
-            "found a formulation, which only the reorientation task has".to_owned()
-        } else {
-            continue;
-        };
-        return Err(document.error_at(spanned.span(), message, None));
+    /// The measures of all subjects, each once.
+    pub fn measures(&self) -> &[Quantity] {
+        &self.measures
     }
-    Ok(())
-}
 
-/// Whether budgets are set in one way only: for each optimiser, or for each instance.
-fn check_budgets(file: &ExperimentFile, document: &Document) -> Result<(), InputError> {
-    let own = file.optimiser.get_ref().iter().find_map(|entrant| entrant.budget.as_ref());
-    match own.filter(|_| !file.sweep.budget.is_empty()) {
-        Some(budget) => {
-            let message = "found a budget of an optimiser's own beside a sweep of budgets, expected one of them";
-            Err(document.error_at(budget.span(), message, None))
+    /// The place of a measure among those of all subjects.
+    pub fn measure(&self, name: &str) -> Option<usize> {
+        self.measures.iter().position(|measure| measure.name == name)
+    }
+
+    /// The facts of all subjects, each once.
+    pub fn facts(&self) -> &[Quantity] {
+        &self.facts
+    }
+
+    /// The instances by the kind of their subjects, in the order of the plan.
+    pub fn by_kind(&self) -> Vec<(String, Vec<&Instance>)> {
+        let mut kinds: Vec<(String, Vec<&Instance>)> = Vec::new();
+        for instance in &self.instances {
+            let kind = instance.subject.kind();
+            match kinds.iter_mut().find(|(name, _)| name == kind) {
+                Some((_, own)) => own.push(instance),
+                None => kinds.push((kind.to_owned(), vec![instance])),
+            }
         }
-        None => Ok(()),
+        kinds
     }
 }
 
-/// Whether labels tell the optimisers apart.
-fn check_labels(
-    plan: &Plan,
-    field: &[EntrantTable],
-    document: &Document,
-) -> Result<(), InputError> {
-    let mut labels = HashSet::new();
-    for (entrant, table) in plan.optimisers.iter().zip(field) {
-        if entrant.label.is_empty() || !labels.insert(&entrant.label) {
-            let message = format!(
-                "found label `{}`, expected one that tells this optimiser from the others",
-                entrant.label
-            );
-            let span = table.label.as_ref().map_or(table.settings.span(), Spanned::span);
-            return Err(document.error_at(span, message, None));
+/// The quantities of some, each name once.
+fn unlike(all: impl Iterator<Item = Quantity>) -> Vec<Quantity> {
+    let mut quantities: Vec<Quantity> = Vec::new();
+    for quantity in all {
+        if quantities.iter().all(|known| known.name != quantity.name) {
+            quantities.push(quantity);
         }
     }
-    Ok(())
-}
-
-/// Which problem an instance is.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Identity<'a> {
-    Task { task: &'a Task, terms: usize, accuracy: Accuracy, boxes: &'a Boxes },
-    Other { problem: &'a str, instance: &'a str },
-}
-
-fn identity(instance: &Instance) -> Identity<'_> {
-    match &instance.subject {
-        Subject::Task { problem, boxes } => Identity::Task {
-            task: problem.task(),
-            terms: problem.family().terms(),
-            accuracy: problem.accuracy(),
-            boxes,
-        },
-        Subject::Other { name, .. } => Identity::Other { problem: name, instance: &instance.label },
-    }
-}
-
-/// Everything that determines a run's result, as JSON.
-#[expect(clippy::expect_used, reason = "plain data has a JSON form")]
-fn recipe(instance: &Instance, settings: &Settings, seed: u64, budget: u64) -> String {
-    #[derive(Serialize)]
-    struct Recipe<'a> {
-        version: u32,
-        format: u64,
-        #[serde(flatten)]
-        subject: Identity<'a>,
-        optimiser: &'a Settings,
-        seed: u64,
-        evaluations: u64,
-    }
-    let subject = identity(instance);
-    let recipe = Recipe {
-        version: RESULT_VERSION,
-        format: FORMAT,
-        subject,
-        optimiser: settings,
-        seed,
-        evaluations: budget,
-    };
-    serde_json::to_string(&recipe).expect("a recipe is plain data")
+    quantities
 }

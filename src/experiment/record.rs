@@ -6,8 +6,9 @@ use std::time::Duration;
 use chrono::Utc;
 use polars::prelude::*;
 
-use super::{Plan, RunSpec};
-use crate::reorientation::Assessment;
+use super::plan::{Plan, RunSpec};
+use super::schema::{FORMAT, clocks, runs, traces};
+use super::subject::{Judgement, Quantity, Value, ValueKind};
 use crate::search::{Oracle, Stop, TracePoint};
 
 /// How a run ended.
@@ -65,7 +66,7 @@ impl Status {
 pub struct Record {
     /// The run's key.
     pub key: String,
-    /// Best cost, certified where there is a motion to certify; NaN when there is none.
+    /// Best cost, certified where the subject does so; NaN where nothing was found.
     pub cost: f64,
     /// How the run ended.
     pub status: Status,
@@ -80,20 +81,19 @@ pub struct Record {
 /// A run that has just ended.
 pub(super) struct Ended<'a> {
     pub(super) status: Status,
-    /// The best point's motion, certified: its coefficients and what is known of it.
-    pub(super) motion: Option<(Vec<f64>, Assessment)>,
+    /// What the subject says of the best point.
+    pub(super) judgement: Option<Judgement>,
     pub(super) seconds: Duration,
+    /// Whether the best point should have been judged and could not be.
+    pub(super) is_unjudged: bool,
     /// How many runs were made at a time.
     pub(super) threads: usize,
     pub(super) oracle: Oracle<'a>,
 }
 
-/// Version of the stored tables; raised when a column changes.
-pub(super) const FORMAT: u64 = 5;
-
 impl Record {
     pub(super) fn new(plan: &Plan, run: &RunSpec, ended: Ended<'_>) -> PolarsResult<Self> {
-        let cost = ended.cost(plan, run);
+        let cost = ended.cost();
         let row = row(plan, run, cost, &ended)?;
         let threads = ended.threads;
         let trace = ended.oracle.into_trace();
@@ -109,77 +109,93 @@ impl Record {
 }
 
 impl Ended<'_> {
-    /// The best cost: the certified motion's, or the search's own where there are no motions.
-    fn cost(&self, plan: &Plan, run: &RunSpec) -> Option<f64> {
-        if plan.instances[run.instance].is_task() {
-            self.motion.as_ref().map(|(_, certified)| certified.cost)
-        } else {
-            self.oracle.best().map(|best| best.evaluation.cost)
-        }
+    /// The best cost: the certified one, or the search's own.
+    fn cost(&self) -> Option<f64> {
+        let judged = self.judgement.as_ref().map(|judgement| judgement.cost);
+        judged
+            .or_else(|| self.oracle.best().filter(|_| !self.is_unjudged).map(|b| b.evaluation.cost))
     }
 }
 
-/// The `runs` table. Angles are in degrees, all else in SI units; what only a task has is null for
-/// other problems.
+/// The `runs` table.
 fn row(
     plan: &Plan,
     run: &RunSpec,
     cost: Option<f64>,
     ended: &Ended<'_>,
 ) -> PolarsResult<DataFrame> {
-    let Ended { status, motion, seconds, threads: _, oracle } = ended;
+    let Ended { status, judgement, seconds, oracle, .. } = ended;
     let entrant = &plan.optimisers[run.optimiser];
     let instance = &plan.instances[run.instance];
-    let problem = instance.reorientation();
-    let task = problem.map(|problem| &**problem.task());
-    let settings = serde_json::to_string(&entrant.settings).unwrap_or_default();
+    let space = entrant.space(instance);
     let best = oracle.best();
-    let found = |value: fn(&Assessment) -> f64| motion.as_ref().map(|(_, motion)| value(motion));
-    let limit = |order: usize| task.and_then(|task| task.uniform_limit_deg(order));
-    df!(
-        "format" => [FORMAT],
-        "key" => [run.key.as_str()],
-        "recipe" => [run.recipe.as_str()],
-        "experiment" => [plan.name.as_str()],
-        "problem" => [instance.subject.name()],
-        "instance" => [instance.label.as_str()],
-        "group" => [instance.group.as_str()],
-        "optimiser" => [entrant.label.as_str()],
-        "formulation" => [problem.map(|_| entrant.settings.formulation().name())],
-        "settings" => [settings],
-        "robot" => [task.map(|task| task.robot.name.as_str())],
-        "weight_base" => [task.map(|task| task.base_weight)],
-        "rate_limit_deg_s" => [limit(0)],
-        "acceleration_limit_deg_s2" => [limit(1)],
-        "jerk_limit_deg_s3" => [limit(2)],
-        "terms" => [problem.map(|problem| problem.family().terms() as u64)],
-        "lanes" => [problem.map(|problem| problem.width().lanes() as u64)],
-        "targets" => list(Some(&instance.targets)),
-        "seed" => [run.seed],
-        "budget" => [run.budget],
-        "j" => [best.map(|best| best.evaluation.cost)],
-        "violation" => [best.map(|best| best.evaluation.violation)],
-        "x" => list(best.map(|best| &best.x)),
-        "certified_j" => [cost],
-        "residual_deg" => [found(|a| a.residual().to_degrees())],
-        "t_f" => [found(|a| a.duration)],
-        "penalty" => [found(Assessment::penalty)],
-        "coefficients" => list(motion.as_ref().map(|(coefficients, _)| coefficients)),
-        "evaluations" => [oracle.evaluations()],
-        "first_feasible" => [oracle.first_feasible()],
-        "linearisations" => [oracle.linearisations()],
-        "curvatures" => [oracle.curvatures()],
-        "conic_solves" => [oracle.conic_solves()],
-        "conic_failures" => [oracle.conic_failures()],
-        "seconds" => [seconds.as_secs_f64()],
-        "seconds_in_problem" => [oracle.time_in_problem().as_secs_f64()],
-        "status" => [status.name()],
-        "message" => [status.message()],
-        "version" => [env!("CARGO_PKG_VERSION")],
-        "commit" => [git_version::git_version!(args = ["--always", "--dirty"], fallback = "unknown")],
-        "cpu" => [cpu()],
-        "date" => [Utc::now().to_rfc3339()],
-    )
+    let head = df!(
+        runs::FORMAT => [FORMAT],
+        runs::KEY => [run.key.as_str()],
+        runs::RECIPE => [run.recipe.as_str()],
+        runs::EXPERIMENT => [plan.name.as_str()],
+        runs::PROBLEM => [instance.subject.name()],
+        runs::INSTANCE => [instance.label.as_str()],
+        runs::GROUP => [instance.group.as_str()],
+        runs::OPTIMISER => [entrant.label.as_str()],
+        runs::FORMULATION => [Some(space.as_str()).filter(|space| !space.is_empty())],
+        runs::SETTINGS => [entrant.settings.to_string()],
+    )?;
+    let facts = cells(plan.facts(), &instance.subject.facts());
+    let found = df!(
+        runs::TARGETS => list(Some(&instance.targets)),
+        runs::SEED => [run.seed],
+        runs::BUDGET => [run.budget],
+        runs::COST => [best.map(|best| best.evaluation.cost)],
+        runs::VIOLATION => [best.map(|best| best.evaluation.violation)],
+        runs::POINT => list(best.map(|best| &best.x)),
+        runs::CERTIFIED_COST => [cost],
+    )?;
+    let values = judgement.as_ref().map_or_else(Vec::new, |found| found.measures.clone());
+    let own: Vec<_> = instance.subject.measures().into_iter().zip(values).collect();
+    let measures = cells(plan.measures(), &own);
+    let tail = df!(
+        runs::EVALUATIONS => [oracle.evaluations()],
+        runs::FIRST_FEASIBLE => [oracle.first_feasible()],
+        runs::LINEARISATIONS => [oracle.linearisations()],
+        runs::CURVATURES => [oracle.curvatures()],
+        runs::CONIC_SOLVES => [oracle.conic_solves()],
+        runs::CONIC_FAILURES => [oracle.conic_failures()],
+        runs::SECONDS => [seconds.as_secs_f64()],
+        runs::SECONDS_IN_PROBLEM => [oracle.time_in_problem().as_secs_f64()],
+        runs::STATUS => [status.name()],
+        runs::MESSAGE => [status.message()],
+        runs::VERSION => [env!("CARGO_PKG_VERSION")],
+        runs::COMMIT => [git_version::git_version!(args = ["--always", "--dirty"], fallback = "unknown")],
+        runs::CPU => [cpu()],
+        runs::DATE => [Utc::now().to_rfc3339()],
+    )?;
+    head.hstack(&facts)?.hstack(found.columns())?.hstack(&measures)?.hstack(tail.columns())
+}
+
+/// One cell for each quantity of a plan; null where the row's subject has none of the name.
+fn cells(all: &[Quantity], own: &[(Quantity, Value)]) -> Vec<Column> {
+    let cell = |quantity: &Quantity| {
+        let value = own.iter().find(|(known, _)| known.name == quantity.name);
+        let value = value.map_or(&Value::None, |(_, value)| value);
+        let name = quantity.name.as_str().into();
+        match quantity.kind {
+            ValueKind::Text => {
+                let text = if let Value::Text(text) = value { Some(text.as_str()) } else { None };
+                Column::new(name, [text])
+            }
+            ValueKind::Count => {
+                let count = if let Value::Count(count) = value { Some(*count) } else { None };
+                Column::new(name, [count])
+            }
+            ValueKind::Real => Column::new(name, [value.real()]),
+            ValueKind::Reals => {
+                let values = if let Value::Reals(values) = value { Some(values) } else { None };
+                list(values).with_name(name).into()
+            }
+        }
+    };
+    all.iter().map(cell).collect()
 }
 
 /// One cell that holds a list of numbers, or null.
@@ -195,20 +211,20 @@ fn list(values: Option<&Vec<f64>>) -> Series {
 /// runs give equal files.
 fn trace_table(key: &str, trace: &[TracePoint]) -> PolarsResult<DataFrame> {
     df!(
-        "key" => vec![key; trace.len()],
-        "evaluation" => trace.iter().map(|p| p.evaluation).collect::<Vec<_>>(),
-        "j" => trace.iter().map(|p| p.best.cost).collect::<Vec<_>>(),
-        "violation" => trace.iter().map(|p| p.best.violation).collect::<Vec<_>>(),
+        traces::KEY => vec![key; trace.len()],
+        traces::EVALUATION => trace.iter().map(|p| p.evaluation).collect::<Vec<_>>(),
+        traces::COST => trace.iter().map(|p| p.best.cost).collect::<Vec<_>>(),
+        traces::VIOLATION => trace.iter().map(|p| p.best.violation).collect::<Vec<_>>(),
     )
 }
 
 /// The `clocks` table: when each row of the trace was reached \[s\], and how many runs were made at a time.
 fn clock_table(key: &str, trace: &[TracePoint], threads: usize) -> PolarsResult<DataFrame> {
     df!(
-        "key" => vec![key; trace.len()],
-        "evaluation" => trace.iter().map(|p| p.evaluation).collect::<Vec<_>>(),
-        "seconds" => trace.iter().map(|p| p.elapsed.as_secs_f64()).collect::<Vec<_>>(),
-        "threads" => vec![threads as u64; trace.len()],
+        clocks::KEY => vec![key; trace.len()],
+        clocks::EVALUATION => trace.iter().map(|p| p.evaluation).collect::<Vec<_>>(),
+        clocks::SECONDS => trace.iter().map(|p| p.elapsed.as_secs_f64()).collect::<Vec<_>>(),
+        clocks::THREADS => vec![threads as u64; trace.len()],
     )
 }
 

@@ -4,8 +4,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use super::caught::caught;
-use super::record::Ended;
-use super::{Plan, Record, RunSpec, Status, Store, StoreError};
+use super::plan::{Plan, RunSpec};
+use super::record::{Ended, Record, Status};
+use super::store::{Store, StoreError};
+use super::subject::Unavailable;
 use crate::search::{Oracle, Rng, Watch};
 
 /// Told of every run that ends.
@@ -36,11 +38,12 @@ pub fn run(
     let stored = store.keys()?;
     let missing: Vec<_> = runs.iter().copied().filter(|run| !stored.contains(&run.key)).collect();
     let batches = batches(&missing);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
+    let pool = pool.map_err(|error| RunError::Threads(error.to_string()))?;
     // Each thread takes the next batch. Shared out as tasks of the pool, a run could begin within another's:
     // polars has threads of its own, and a worker that waits for them takes up whatever task there is.
     let next = AtomicUsize::new(0);
-    let work = || -> Result<(), StoreError> {
+    let work = || -> Result<(), RunError> {
         loop {
             let place = next.fetch_add(1, Ordering::Relaxed);
             let Some(batch) = batches.get(place) else { return Ok(()) };
@@ -83,7 +86,7 @@ fn run_batch(
     store: &Store,
     watch: &Watch,
     progress: &dyn Progress,
-) -> Result<(), StoreError> {
+) -> Result<(), RunError> {
     let mut done = Vec::new();
     let keep = |done: &mut Vec<(&RunSpec, Record)>| -> Result<(), StoreError> {
         if !done.is_empty() {
@@ -100,7 +103,7 @@ fn run_batch(
             waiting = Instant::now();
         }
     }
-    keep(&mut done)
+    Ok(keep(&mut done)?)
 }
 
 /// Why running came to an end.
@@ -109,9 +112,12 @@ pub enum RunError {
     /// A result could not be stored.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// A problem or an optimiser is another program's.
+    #[error("{0}, which alone can do the runs that are missing")]
+    Unavailable(#[from] Unavailable),
     /// No threads to be had.
-    #[error("cannot start worker threads")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    #[error("cannot start worker threads: {0}")]
+    Threads(String),
 }
 
 /// One run, unless it is interrupted.
@@ -120,28 +126,35 @@ fn one(
     run: &RunSpec,
     threads: usize,
     watch: &Watch,
-) -> Result<Option<Record>, StoreError> {
+) -> Result<Option<Record>, RunError> {
     if watch.is_interrupted() {
         return Ok(None);
     }
-    let instance = &plan.instances[run.instance];
-    let settings = &plan.optimisers[run.optimiser].settings;
-    let problem = instance.problem(settings.formulation());
+    let (instance, entrant) = (&plan.instances[run.instance], &plan.optimisers[run.optimiser]);
+    let space = entrant.space(instance);
+    let (problem, optimiser) = (instance.subject.problem(&space)?, entrant.optimiser()?);
     let mut oracle = Oracle::new(&*problem, run.budget, watch);
     let started = Instant::now();
-    let mut outcome =
-        caught(|| settings.optimiser().minimise(&mut oracle, &mut Rng::new(run.seed)));
+    let mut outcome = caught(|| optimiser.minimise(&mut oracle, &mut Rng::new(run.seed)));
     let seconds = started.elapsed();
     let best = oracle.best();
-    let motion = caught(|| best.and_then(|b| instance.certify(settings.formulation(), &b.x)));
-    let motion = motion.unwrap_or_else(|panic| {
-        outcome = Err(panic);
-        None
-    });
+    let judged = caught(|| best.map_or(Ok(None), |b| instance.subject.judge(&space, &b.x)));
+    let (judgement, is_unjudged) = match judged {
+        Ok(Ok(judgement)) => (judgement, false),
+        Ok(Err(error)) => {
+            outcome = Err(error.to_string());
+            (None, true)
+        }
+        Err(panic) => {
+            outcome = Err(panic);
+            (None, true)
+        }
+    };
     let Some(status) = Status::from_outcome(outcome) else {
         return Ok(None);
     };
     // What the run did not spend will not be spent.
     watch.add_evaluations(oracle.remaining());
-    Ok(Some(Record::new(plan, run, Ended { status, motion, seconds, threads, oracle })?))
+    let ended = Ended { status, judgement, is_unjudged, seconds, threads, oracle };
+    Ok(Some(Record::new(plan, run, ended).map_err(StoreError::from)?))
 }

@@ -26,7 +26,8 @@ pub struct Shard {
 }
 
 impl Shard {
-    fn new(index: usize, count: usize) -> Option<Self> {
+    /// One of so many parts, counted from zero; none where there is no such part.
+    pub fn new(index: usize, count: usize) -> Option<Self> {
         (index < count).then_some(Self { index, count })
     }
 

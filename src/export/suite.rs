@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use polars::prelude::*;
 
-use crate::analysis::{Run, least_found};
-use crate::experiment::{Instance, Plan};
-use crate::output::FileError;
+use crate::analysis::least_found;
+use crate::experiment::{Instance, Plan, Run};
+use crate::output::{FileError, file_name, unlike};
 
 /// The name of the suite in the files.
 pub(super) const SUITE: &str = "driftless";
@@ -173,7 +173,7 @@ fn algorithms(plan: &Plan) -> Vec<Algorithm> {
     let mut taken = HashSet::new();
     let algorithms = plan.optimisers.iter().map(|entrant| {
         let folder = unlike(&file_name(&entrant.label), &mut taken);
-        let settings = serde_json::to_string(&entrant.settings).unwrap_or_default();
+        let settings = entrant.settings.to_string();
         Algorithm { name: one_line(&entrant.label), folder, settings }
     });
     algorithms.collect()
@@ -192,11 +192,11 @@ fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>), 
             functions.push(function(instance));
             functions.len() - 1
         });
-        let known = instance.known_cost();
+        let known = instance.subject.known_cost();
         let instances = &mut functions[place].instances;
         places.push((place, instances.len()));
         instances.push(Objective {
-            dimension: number("variables", instance.dimension())?,
+            dimension: number("variables", instance.subject.dimension())?,
             optimum: known.unwrap_or(*least),
             is_known: known.is_some(),
         });
@@ -221,22 +221,4 @@ fn number(what: &'static str, found: usize) -> Result<u16, SuiteError> {
 /// A label without line breaks and doubled spaces.
 fn one_line(label: &str) -> String {
     label.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// A name, with a number where it is taken. Some file systems take capitals and small letters for the same.
-pub(super) fn unlike(plain: &str, taken: &mut HashSet<String>) -> String {
-    let mut name = plain.to_owned();
-    for n in 2.. {
-        if taken.insert(name.to_lowercase()) {
-            break;
-        }
-        name = format!("{plain}-{n}");
-    }
-    name
-}
-
-/// A label as part of a file's name on any system: letters, digits, `-` and `_`, a hundred at most.
-pub(super) fn file_name(label: &str) -> String {
-    let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
-    label.trim().chars().map(plain).take(100).collect()
 }

@@ -6,6 +6,4 @@ mod table;
 
 pub use analytic::{Analytic, TestFunction};
 #[cfg(feature = "harness")]
-pub(crate) use table::DEFAULTS;
-#[cfg(feature = "harness")]
-pub use table::{Dimension, FunctionTable};
+pub use table::Functions;

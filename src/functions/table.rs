@@ -1,17 +1,19 @@
-//! The `[functions]` table: test functions instead of the task.
+//! Test functions as subjects of experiments: the `[functions]` table.
 
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use toml::Spanned;
 
 use super::analytic::{Analytic, TestFunction};
-use crate::experiment::Instance;
+use crate::experiment::{Instance, Kind, Source, Subject, Unavailable};
 use crate::input::{Document, InputError, count, count_from};
+use crate::search::Problem;
 
 /// What a `[functions]` table leaves out is taken from here.
-pub(crate) const DEFAULTS: &str = "[functions]\ndimension = [10]\ninstances = 1\n";
+const DEFAULTS: &str = "[functions]\ndimension = [10]\ninstances = 1\n";
 
 /// Targets where the file states none; the least value is zero.
 const TARGETS: [f64; 3] = [1e-2, 1e-5, 1e-8];
@@ -19,23 +21,23 @@ const TARGETS: [f64; 3] = [1e-2, 1e-5, 1e-8];
 /// The `[functions]` table: the instances are the cross product of its lists.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
-pub struct FunctionTable {
+struct FunctionTable {
     /// Which functions.
-    pub name: Spanned<Vec<TestFunction>>,
+    name: Spanned<Vec<TestFunction>>,
     /// Numbers of variables.
-    pub dimension: Spanned<Vec<Dimension>>,
+    dimension: Spanned<Vec<Dimension>>,
     /// How many shifts and rotations of each function; they are instances 1, 2, …
     #[serde(deserialize_with = "count::<10_000, _, _>")]
-    pub instances: NonZeroU64,
+    instances: NonZeroU64,
 }
 
 /// A number of variables, checked where it stands in a list.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Dimension(#[serde(deserialize_with = "count_from::<2, 1000, _, _>")] NonZeroUsize);
+struct Dimension(#[serde(deserialize_with = "count_from::<2, 1000, _, _>")] NonZeroUsize);
 
 impl FunctionTable {
     /// The instances; those that differ in shift and rotation alone are one group.
-    pub(crate) fn instances(&self, document: &Document) -> Result<Vec<Instance>, InputError> {
+    fn spelt_out(&self, document: &Document) -> Result<Vec<Instance>, InputError> {
         let (names, dimensions) = (self.name.get_ref(), self.dimension.get_ref());
         for (span, empty) in
             [(self.name.span(), names.is_empty()), (self.dimension.span(), dimensions.is_empty())]
@@ -58,10 +60,83 @@ impl FunctionTable {
 }
 
 fn instance(function: TestFunction, dimension: usize, number: u64) -> Instance {
-    let name = function.name();
-    let group = format!("{name} dimension={dimension}");
+    let group = format!("{} dimension={dimension}", function.name());
     let label = format!("{group} instance={number}");
     let problem = Arc::new(Analytic::new(function, dimension, number));
-    let instance = Instance::other(&label, name, problem);
-    Instance { group, targets: TARGETS.into(), ..instance }
+    let mut instance = Instance::new(label, Arc::new(Function { problem, dimension, number }));
+    instance.title.clone_from(&group);
+    instance.group = group;
+    instance.with_targets(TARGETS)
+}
+
+/// The name of the kind.
+const KIND: &str = "function";
+
+/// The test functions.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Functions;
+
+/// A file's `functions` key.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct FunctionsFile {
+    functions: FunctionTable,
+}
+
+impl Kind for Functions {
+    fn name(&self) -> &'static str {
+        KIND
+    }
+
+    fn keys(&self) -> &'static [&'static str] {
+        &["functions"]
+    }
+
+    fn read(&self, document: &Document) -> Result<Arc<dyn Source>, InputError> {
+        let file: FunctionsFile = document.parse_keys(self.keys(), &[DEFAULTS])?;
+        Ok(Arc::new(file))
+    }
+}
+
+impl Source for FunctionsFile {
+    fn instances(&self, document: &Document) -> Result<Vec<Instance>, InputError> {
+        self.functions.spelt_out(document)
+    }
+
+    fn written(&self) -> Map<String, Value> {
+        crate::experiment::written(self)
+    }
+}
+
+/// One instance of a test function.
+struct Function {
+    problem: Arc<Analytic>,
+    dimension: usize,
+    number: u64,
+}
+
+impl Subject for Function {
+    fn kind(&self) -> &'static str {
+        KIND
+    }
+
+    fn name(&self) -> &str {
+        self.problem.function().name()
+    }
+
+    fn identity(&self) -> Value {
+        serde_json::json!({ "dimension": self.dimension, "instance": self.number })
+    }
+
+    fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Unavailable> {
+        Ok(self.problem.clone())
+    }
+
+    fn dependence(&self, instances: &[&Instance]) -> Option<&'static str> {
+        let mut names: Vec<&str> = instances.iter().map(|i| i.subject.name()).collect();
+        names.sort_unstable();
+        names.windows(2).any(|pair| pair[0] == pair[1]).then_some(
+            "Shifts and dimensions of one function are not independent functions, so p-values are smaller than they \
+             should be.",
+        )
+    }
 }

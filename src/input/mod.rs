@@ -12,7 +12,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
 pub use checked::{
     Finite, Fraction, PerJoint, Positive, count, count_from, finite, finite_array, fraction,
@@ -73,6 +73,13 @@ impl Document {
         Ok(self.table()?.get_ref().get_key_value(key).map(|(key, _)| key.span()))
     }
 
+    /// The keys at the top level, and where they stand.
+    pub fn keys(&self) -> Result<Vec<(String, Range<usize>)>, InputError> {
+        let table = self.table()?;
+        let key = |key: &Spanned<DeString<'_>>| (key.get_ref().to_string(), key.span());
+        Ok(table.get_ref().keys().map(key).collect())
+    }
+
     /// Parses the whole text as `T`.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         self.parse_over(&[])
@@ -82,6 +89,18 @@ impl Document {
     /// of `defaults` that has it.
     pub fn parse_over<T: DeserializeOwned>(&self, defaults: &[&str]) -> Result<T, InputError> {
         self.parse_reshaped(defaults, |_| Ok(()))
+    }
+
+    /// Parses some keys of the text as `T`, on the terms of [`parse_over`](Self::parse_over).
+    pub fn parse_keys<T: DeserializeOwned>(
+        &self,
+        keys: &[&str],
+        defaults: &[&str],
+    ) -> Result<T, InputError> {
+        self.parse_reshaped(defaults, |table| {
+            keep(table, keys);
+            Ok(())
+        })
     }
 
     /// Like [`parse_over`](Self::parse_over); the tree of keys and values is changed by `reshape` before
@@ -131,6 +150,14 @@ impl Document {
     fn content_error(&self, error: &toml::de::Error) -> InputError {
         let message = error.message().trim();
         self.error_at(error.span().unwrap_or(0..0), message, nearest_known_name(message))
+    }
+}
+
+/// Leaves some keys of a table.
+pub fn keep(table: &mut DeTable<'_>, keys: &[&str]) {
+    let others: Vec<_> = table.keys().map(|key| key.get_ref().clone()).collect();
+    for key in others.iter().filter(|key| !keys.contains(&key.as_ref())) {
+        table.remove(key.as_ref());
     }
 }
 

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{CmaEs, De, Hybrid, LShade, NelderMead, Optimiser, Pso, RandomSearch, Scp};
-use crate::reorientation::Formulation;
 
 /// From one line an optimiser: the choice of one with its settings, and what has to be known of each.
 macro_rules! catalogue {
@@ -84,8 +83,8 @@ impl Settings {
         }
     }
 
-    /// In which variables it searches.
-    pub fn formulation(&self) -> Formulation {
+    /// The variables in which it searches, where it names them.
+    pub fn formulation(&self) -> Option<&str> {
         self.optimiser().formulation()
     }
 

@@ -18,7 +18,6 @@ use super::distribution::{Constants, Distribution};
 use super::population::Population;
 use super::{Optimiser, mirror_from_unit};
 use crate::input::{count, non_negative, optional_count, share};
-use crate::reorientation::Formulation;
 use crate::search::Points;
 use crate::search::{Oracle, Rng, Stop};
 
@@ -26,8 +25,9 @@ use crate::search::{Oracle, Rng, Stop};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct CmaEs {
-    /// variables in which the task is searched
-    pub formulation: Formulation,
+    /// variables in which a problem with several formulations is searched; without it the problem's first
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formulation: Option<String>,
     /// points a generation at first, `λ`, at least four; without it 4 + ⌊3 ln n⌋ for n variables
     #[serde(deserialize_with = "optional_count::<4, LARGEST, _, _>")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -46,7 +46,7 @@ pub struct CmaEs {
 impl Default for CmaEs {
     fn default() -> Self {
         Self {
-            formulation: Formulation::TimeFree,
+            formulation: None,
             population: None,
             step: 0.3,
             growth: NonZeroU32::MIN.saturating_add(1),
@@ -69,8 +69,8 @@ impl Optimiser for CmaEs {
         }
     }
 
-    fn formulation(&self) -> Formulation {
-        self.formulation
+    fn formulation(&self) -> Option<&str> {
+        self.formulation.as_deref()
     }
 }
 

@@ -14,15 +14,15 @@ use serde::{Deserialize, Serialize};
 use super::Optimiser;
 use super::population::{Population, index_besides};
 use crate::input::{fraction, optional_count, positive};
-use crate::reorientation::Formulation;
 use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of differential evolution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct De {
-    /// variables in which the task is searched
-    pub formulation: Formulation,
+    /// variables in which a problem with several formulations is searched; without it the problem's first
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formulation: Option<String>,
     /// number of vectors, `NP`, at least four; without it ten for each variable
     #[serde(deserialize_with = "optional_count::<4, 1_000_000, _, _>")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -38,8 +38,7 @@ pub struct De {
 impl Default for De {
     /// What the paper tries first.
     fn default() -> Self {
-        let formulation = Formulation::TimeFree;
-        Self { formulation, population: None, weight: 0.5, crossover: 0.9 }
+        Self { formulation: None, population: None, weight: 0.5, crossover: 0.9 }
     }
 }
 
@@ -62,8 +61,8 @@ impl Optimiser for De {
         }
     }
 
-    fn formulation(&self) -> Formulation {
-        self.formulation
+    fn formulation(&self) -> Option<&str> {
+        self.formulation.as_deref()
     }
 }
 

@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{LShade, Optimiser, Scp, Settings};
 use crate::input::share;
-use crate::reorientation::Formulation;
 use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of a hybrid.
@@ -32,7 +31,7 @@ impl Default for Hybrid {
     }
 }
 
-/// An optimiser that needs no derivatives, in the variables that have them.
+/// An optimiser that needs no derivatives.
 fn to_refine<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Box<Settings>, D::Error> {
     let settings = Settings::deserialize(deserializer)?;
     if settings.optimiser().needs_derivatives() {
@@ -40,13 +39,7 @@ fn to_refine<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Box<Settings>
         let expected = "an optimiser that needs no derivatives";
         return Err(D::Error::custom(format!("found `{found}`, expected {expected}")));
     }
-    match settings.formulation() {
-        Formulation::TimeFree => Ok(Box::new(settings)),
-        other => Err(D::Error::custom(format!(
-            "found a search in `{}`, expected one in `time-free`, as derivatives are",
-            other.name()
-        ))),
-    }
+    Ok(Box::new(settings))
 }
 
 impl Optimiser for Hybrid {
@@ -57,6 +50,10 @@ impl Optimiser for Hybrid {
             let found = oracle.within(round, search)?;
             self.refine.minimise_from(found.as_ref().map(|best| &*best.x), oracle, rng)?;
         }
+    }
+
+    fn formulation(&self) -> Option<&str> {
+        self.search.formulation()
     }
 
     fn needs_derivatives(&self) -> bool {

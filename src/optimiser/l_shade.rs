@@ -14,7 +14,6 @@ use serde::{Deserialize, Serialize};
 use super::Optimiser;
 use super::population::{Population, index_besides};
 use crate::input::{count, fraction, non_negative, optional_count};
-use crate::reorientation::Formulation;
 use crate::search::Points;
 use crate::search::{Oracle, Rng, Stop};
 
@@ -22,8 +21,9 @@ use crate::search::{Oracle, Rng, Stop};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct LShade {
-    /// variables in which the task is searched
-    pub formulation: Formulation,
+    /// variables in which a problem with several formulations is searched; without it the problem's first
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formulation: Option<String>,
     /// number of vectors at the start, `N_init`, at least four; without it 18 for each variable
     #[serde(deserialize_with = "optional_count::<4, 1_000_000, _, _>")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -43,7 +43,7 @@ impl Default for LShade {
     /// The paper's settings.
     fn default() -> Self {
         Self {
-            formulation: Formulation::TimeFree,
+            formulation: None,
             population: None,
             memory: NonZeroUsize::MIN.saturating_add(5),
             greediness: 0.11,
@@ -87,8 +87,8 @@ impl Optimiser for LShade {
         }
     }
 
-    fn formulation(&self) -> Formulation {
-        self.formulation
+    fn formulation(&self) -> Option<&str> {
+        self.formulation.as_deref()
     }
 }
 

@@ -14,15 +14,15 @@ use serde::{Deserialize, Serialize};
 
 use super::{Optimiser, mirror_from_unit, rank};
 use crate::input::{count, positive, share};
-use crate::reorientation::Formulation;
 use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of the simplex method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct NelderMead {
-    /// variables in which the task is searched
-    pub formulation: Formulation,
+    /// variables in which a problem with several formulations is searched; without it the problem's first
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formulation: Option<String>,
     /// length of the first simplex's edges along the axes, as a fraction of the box's width
     #[serde(deserialize_with = "share")]
     pub simplex: f64,
@@ -37,7 +37,7 @@ pub struct NelderMead {
 impl Default for NelderMead {
     fn default() -> Self {
         Self {
-            formulation: Formulation::TimeFree,
+            formulation: None,
             simplex: 0.1,
             cost_tolerance: 1e-12,
             patience: NonZeroU32::MIN.saturating_add(29),
@@ -53,8 +53,8 @@ impl Optimiser for NelderMead {
         }
     }
 
-    fn formulation(&self) -> Formulation {
-        self.formulation
+    fn formulation(&self) -> Option<&str> {
+        self.formulation.as_deref()
     }
 }
 

@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{Optimiser, rank, uniform_point};
 use crate::input::{count, finite, non_negative, positive, share};
-use crate::reorientation::Formulation;
 use crate::search::{Evaluation, Points};
 use crate::search::{Oracle, Rng, Stop};
 
@@ -20,8 +19,9 @@ use crate::search::{Oracle, Rng, Stop};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct Pso {
-    /// variables in which the task is searched
-    pub formulation: Formulation,
+    /// variables in which a problem with several formulations is searched; without it the problem's first
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formulation: Option<String>,
     /// number of particles, `NP`
     #[serde(deserialize_with = "count::<1_000_000, _, _>")]
     pub population: NonZeroUsize,
@@ -73,7 +73,7 @@ impl Default for Pso {
     /// The paper's settings; `δ`, the velocity limit and the walls are this program's choice.
     fn default() -> Self {
         Self {
-            formulation: Formulation::TimeFree,
+            formulation: None,
             population: NonZeroUsize::MIN.saturating_add(149),
             iterations: None,
             inertia: Inertia { first: 0.9, last: 0.1 },
@@ -100,8 +100,8 @@ impl Optimiser for Pso {
         Ok(())
     }
 
-    fn formulation(&self) -> Formulation {
-        self.formulation
+    fn formulation(&self) -> Option<&str> {
+        self.formulation.as_deref()
     }
 }
 

@@ -5,7 +5,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Optimiser, uniform_point};
-use crate::reorientation::Formulation;
 use crate::search::{Evaluation, Points};
 use crate::search::{Oracle, Rng, Stop};
 
@@ -13,13 +12,14 @@ use crate::search::{Oracle, Rng, Stop};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct RandomSearch {
-    /// variables in which the task is searched
-    pub formulation: Formulation,
+    /// variables in which a problem with several formulations is searched; without it the problem's first
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formulation: Option<String>,
 }
 
 impl Default for RandomSearch {
     fn default() -> Self {
-        Self { formulation: Formulation::TimeFree }
+        Self { formulation: None }
     }
 }
 
@@ -36,7 +36,7 @@ impl Optimiser for RandomSearch {
         }
     }
 
-    fn formulation(&self) -> Formulation {
-        self.formulation
+    fn formulation(&self) -> Option<&str> {
+        self.formulation.as_deref()
     }
 }

@@ -2,18 +2,15 @@
 
 use polars::prelude::DataFrame;
 
-use super::chart::Chart;
-use super::figure::{Figure, PlotError};
 use super::looks::Looks;
-use super::sweeps::Swept;
-use super::{comparison, convergence, critical_difference, pareto, running_times, sweeps};
+use super::{comparison, convergence, critical_difference, running_times};
 use crate::analysis::ALPHA;
-use crate::analysis::tables::Table;
+use crate::exhibit::{Chart, Table};
 use crate::experiment::Plan;
-use crate::reorientation::BestKnown;
+use crate::figure::{Figure, FigureError};
 
-/// The names that an experiment's charts may have, but for those of its best motion.
-pub const NAMES: [&str; 14] = [
+/// The names that every experiment's charts may have.
+pub const NAMES: [&str; 8] = [
     "convergence",
     "running-time-distribution",
     "expected-running-time",
@@ -22,12 +19,6 @@ pub const NAMES: [&str; 14] = [
     "final-costs",
     "effect-sizes",
     "critical-difference",
-    "weight-sweep",
-    "rate-sweep",
-    "acceleration-sweep",
-    "jerk-sweep",
-    "terms-sweep",
-    "pareto",
 ];
 
 /// What charts are made of.
@@ -40,14 +31,20 @@ struct Maker<'a> {
     charts: Vec<Chart>,
 }
 
-/// Every chart that the tables of an experiment with so many stored runs give. Those of more than 24 groups of instances, or of more than eight
-/// curves of a sweep, are left out.
-pub fn charts(plan: &Plan, tables: &[Table], stored: usize) -> Result<Vec<Chart>, PlotError> {
-    let looks = Looks::of(&plan.optimisers);
+/// Every chart that the tables of an experiment with so many stored runs give. Those of more than 24
+/// groups of instances are left out.
+/// `leading` are a subject's own, which come first.
+pub fn charts(
+    plan: &Plan,
+    tables: &[Table],
+    stored: usize,
+    leading: Vec<Chart>,
+) -> Result<Vec<Chart>, FigureError> {
+    let looks = Looks::of_plan(plan);
     let notes = notes(plan, stored);
-    let mut maker = Maker { plan, tables, looks, notes, charts: Vec::new() };
-    // What a sweep asks comes first.
-    maker.sweeps()?;
+    let noted = |chart: Chart| Chart { caption: format!("{}{notes}", chart.caption), ..chart };
+    let charts = leading.into_iter().map(noted).collect();
+    let mut maker = Maker { plan, tables, looks, notes, charts };
     maker.costs()?;
     maker.ranks()?;
     maker.times()?;
@@ -73,12 +70,12 @@ impl Maker<'_> {
             name: name.to_owned(),
             title: title.to_owned(),
             caption: format!("{caption}{}", self.notes),
-            table,
+            table: table.into(),
             figure,
         }));
     }
 
-    fn costs(&mut self) -> Result<(), PlotError> {
+    fn costs(&mut self) -> Result<(), FigureError> {
         let symbol = self.plan.cost_symbol();
         if let Some(frame) = self.frame("convergence") {
             let figure = convergence::convergence(frame, &self.looks, symbol)?;
@@ -102,7 +99,7 @@ impl Maker<'_> {
         Ok(())
     }
 
-    fn times(&mut self) -> Result<(), PlotError> {
+    fn times(&mut self) -> Result<(), FigureError> {
         let symbol = self.plan.cost_symbol();
         if let Some(frame) = self.frame("running-time-distribution") {
             let figure = running_times::running_time_distribution(frame, &self.looks)?;
@@ -137,7 +134,7 @@ impl Maker<'_> {
         Ok(())
     }
 
-    fn ranks(&mut self) -> Result<(), PlotError> {
+    fn ranks(&mut self) -> Result<(), FigureError> {
         let tables = [self.frame("ranks"), self.frame("friedman"), self.frame("pairs")];
         let [Some(ranks), Some(friedman), Some(pairs)] = tables else { return Ok(()) };
         if self.plan.is_uneven() {
@@ -162,38 +159,12 @@ impl Maker<'_> {
         self.add("effect-sizes", "Every two optimisers", &caption, "pairs", Some(effects));
         Ok(())
     }
-
-    fn sweeps(&mut self) -> Result<(), PlotError> {
-        if !self.plan.instances.iter().any(crate::experiment::Instance::is_task) {
-            return Ok(());
-        }
-        for swept in Swept::ALL {
-            let Some(best) = self.frame("best") else { continue };
-            let figure = sweeps::sweep(best, swept, self.free_form_bound())?;
-            let (name, title, caption) = told(swept);
-            self.add(name, title, caption, "best", figure);
-        }
-        if let Some(frame) = self.frame("pareto") {
-            let figure = pareto::pareto(frame)?;
-            let caption = "Residual against duration of the best motions of all weights; efficient are those that no other \
-                weight's beats in one without being worse in the other.";
-            self.add("pareto", "Residual against duration", caption, "pareto", figure);
-        }
-        Ok(())
-    }
-
-    /// The least cost over motions of any shape of the first instance where it is known. It does not depend on the number of
-    /// terms.
-    fn free_form_bound(&self) -> Option<f64> {
-        let problems = self.plan.instances.iter().filter_map(|instance| instance.reorientation());
-        problems.filter_map(BestKnown::of).find_map(|known| known.free_form_j)
-    }
 }
 
 /// What has to be known of the runs to read a chart.
 fn notes(plan: &Plan, stored: usize) -> String {
     let planned = plan.runs.len();
-    let uses = plan.optimisers.iter().filter(|o| o.settings.optimiser().needs_derivatives());
+    let uses = plan.optimisers.iter().filter(|entrant| entrant.needs_derivatives);
     let uses: Vec<&str> = uses.map(|entrant| entrant.label.as_str()).collect();
     let notes = [
         (stored < planned).then(|| format!(" Only {stored} of {planned} runs are stored so far.")),
@@ -202,37 +173,4 @@ fn notes(plan: &Plan, stored: usize) -> String {
             .then(|| format!(" Evaluations of {} come with derivatives.", uses.join(", "))),
     ];
     notes.into_iter().flatten().collect()
-}
-
-/// Name, title and caption of a sweep's chart.
-fn told(swept: Swept) -> (&'static str, &'static str, &'static str) {
-    match swept {
-        Swept::WeightBase => (
-            "weight-sweep",
-            "Weight of the base",
-            "Residual and duration of the best motion against the weight of the base.",
-        ),
-        Swept::RateLimit => (
-            "rate-sweep",
-            "Limit on rates",
-            "Duration of the best motion against the limit on rates.",
-        ),
-        Swept::AccelerationLimit => (
-            "acceleration-sweep",
-            "Limit on accelerations",
-            "Duration of the best motion against the limit on accelerations.",
-        ),
-        Swept::JerkLimit => (
-            "jerk-sweep",
-            "Limit on jerks",
-            "Duration of the best motion against the limit on jerks. The dashed line, where there is one, is the \
-             law that holds while jerk alone limits the motion.",
-        ),
-        Swept::Terms => (
-            "terms-sweep",
-            "Number of terms",
-            "Cost of the best motion against the number of free coefficients a joint. The dashed line, where there is one, \
-             is the least cost found for motions of any shape, of piecewise constant jerk.",
-        ),
-    }
 }

@@ -2,16 +2,16 @@
 
 use polars::prelude::DataFrame;
 
-use super::axis::Axis;
-use super::curves::{MOST_PANELS, range, reals, texts};
-use super::figure::{Figure, PlotError};
+use super::curves::{MOST_PANELS, reals, texts};
 use super::looks::Looks;
-use super::marks::Mark;
-use super::panel::{MARGIN, Panel};
-use super::sheet::{Anchor, fitted, titled};
-use super::style::{COLOURS, GRID, PAPER, Stroke, Width, mix};
 use crate::analysis::ALPHA;
 use crate::analysis::statistics::quantile;
+use crate::figure::axis::Axis;
+use crate::figure::marks::Mark;
+use crate::figure::panel::{MARGIN, Panel, range};
+use crate::figure::sheet::{Anchor, fitted};
+use crate::figure::style::{COLOURS, GRID, PAPER, Stroke, Width, mix};
+use crate::figure::{Figure, FigureError};
 
 /// Final costs below are drawn at the axis's lower end.
 const LOWEST: f64 = 1e-10;
@@ -34,7 +34,7 @@ pub fn final_costs(
     frame: &DataFrame,
     looks: &Looks,
     symbol: &str,
-) -> Result<Option<Figure>, PlotError> {
+) -> Result<Option<Figure>, FigureError> {
     let (groups, optimisers) = (texts(frame, "group")?, texts(frame, "optimiser")?);
     let costs = reals(frame, &format!("best {symbol}"))?;
     let mut panels: Vec<&String> = groups.iter().collect();
@@ -62,7 +62,7 @@ pub fn final_costs(
         });
         let names: Vec<String> = labels.iter().map(|&label| label.to_owned()).collect();
         let marks = marks.collect();
-        Panel::new(x, Axis::names("", &names).reversed(), marks).titled(&titled(group))
+        Panel::new(x, Axis::names("", &names).reversed(), marks).titled(&looks.title(group))
     };
     let mut figure = Figure::grid(panels.into_iter().map(panel).collect());
     figure.height = ROW * labels.len() as f64;
@@ -109,7 +109,7 @@ fn boxed(row: f64, costs: &[f64], stroke: Stroke) -> Vec<Mark> {
 /// Vargha and Delaney's A12 of every two optimisers as a heat map, from the table `pairs`, in the order of the
 /// table `ranks`: the probability that a run of the row's ends lower than one of the column's. A star marks pairs that
 /// differ significantly; pairs that do not are pale.
-pub fn effect_sizes(pairs: &DataFrame, ranks: &DataFrame) -> Result<Figure, PlotError> {
+pub fn effect_sizes(pairs: &DataFrame, ranks: &DataFrame) -> Result<Figure, FigureError> {
     let order = texts(ranks, "optimiser")?;
     let place = |label: &String| order.iter().position(|name| name == label).unwrap_or_default();
     let (first, second) = (texts(pairs, "first")?, texts(pairs, "second")?);

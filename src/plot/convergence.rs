@@ -2,13 +2,13 @@
 
 use polars::prelude::DataFrame;
 
-use super::axis::Axis;
-use super::curves::{Curve, curves, facets, range, stepped};
-use super::figure::{Figure, PlotError};
+use super::curves::{Curve, curves, facets, stepped};
 use super::looks::Looks;
-use super::marks::{Line, Mark, Marked};
-use super::panel::{MARGIN, Panel};
-use super::style::{FAINT, Stroke};
+use crate::figure::axis::Axis;
+use crate::figure::marks::{Line, Mark, Marked};
+use crate::figure::panel::{MARGIN, Panel, range};
+use crate::figure::style::{FAINT, Stroke};
+use crate::figure::{Figure, FigureError};
 
 /// Costs below are drawn at the axis's lower end; a test function's optimum, zero, has no other place
 /// on it.
@@ -20,7 +20,7 @@ pub fn convergence(
     frame: &DataFrame,
     looks: &Looks,
     symbol: &str,
-) -> Result<Option<Figure>, PlotError> {
+) -> Result<Option<Figure>, FigureError> {
     let quartiles = ["quartile 1", "median", "quartile 3"];
     let curves = curves(frame, "group", "evaluations", &quartiles)?;
     let Some(facets) = facets(&curves, looks) else { return Ok(None) };

@@ -2,14 +2,14 @@
 
 use polars::prelude::DataFrame;
 
-use super::axis::Axis;
 use super::curves::{reals, texts};
-use super::figure::{Figure, PlotError};
 use super::looks::Looks;
-use super::marks::{Line, Mark};
-use super::panel::Panel;
-use super::sheet::{Anchor, fitted, text_width};
-use super::style::{INK, Stroke, TEXT_PT, Width};
+use crate::figure::axis::Axis;
+use crate::figure::marks::{Line, Mark};
+use crate::figure::panel::Panel;
+use crate::figure::sheet::{Anchor, fitted, text_width};
+use crate::figure::style::{INK, Stroke, TEXT_PT, Width};
+use crate::figure::{Figure, FigureError};
 
 /// Distance between lines of labels, and between bars \[mm\].
 const ROW: f64 = 4.2;
@@ -91,7 +91,7 @@ pub fn critical_difference(
     ranks: &DataFrame,
     friedman: &DataFrame,
     looks: &Looks,
-) -> Result<Figure, PlotError> {
+) -> Result<Figure, FigureError> {
     let (labels, means) = (texts(ranks, "optimiser")?, reals(ranks, "mean rank")?);
     let cliques = texts(ranks, "cliques")?;
     let difference = reals(friedman, "critical difference")?.first().copied().unwrap_or(f64::NAN);

@@ -3,7 +3,7 @@
 use polars::prelude::*;
 
 use super::looks::Looks;
-use super::sheet::{printable, titled};
+use crate::figure::sheet::printable;
 
 /// One curve.
 #[derive(Debug, Clone, Default)]
@@ -77,7 +77,7 @@ pub(super) fn facets<'a>(curves: &'a [Curve], looks: &Looks) -> Option<Vec<Facet
         let all = curves.iter().filter(|curve| curve.panel == panel);
         let (curves, others) =
             all.partition(|curve| kind.is_empty() || looks.kind(&curve.optimiser) == kind);
-        let titles = [titled(panel), kind.to_owned()].into_iter();
+        let titles = [looks.title(panel), kind.to_owned()].into_iter();
         let titles: Vec<String> = titles.filter(|title| !title.is_empty()).collect();
         Facet { title: titles.join(", "), curves, others }
     };
@@ -94,12 +94,4 @@ pub(super) fn stepped(values: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
         points.push([x, y]);
     }
     points
-}
-
-/// The smallest and the largest finite value, none below `lowest`.
-pub(super) fn range(values: impl Iterator<Item = f64>, lowest: f64) -> [f64; 2] {
-    let finite = values.filter(|v| v.is_finite()).map(|v| v.max(lowest));
-    let [low, high] =
-        finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
-    if low <= high { [low, high] } else { [lowest.max(0.1), lowest.max(0.1) * 10.0] }
 }

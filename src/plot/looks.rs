@@ -2,11 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::sheet::printable;
-use super::style::{COLOURS, DASHES, INK, Marker, PAPER, Stroke, mix};
-use crate::experiment::Entrant;
-use crate::optimiser::Settings;
-use crate::reorientation::Formulation;
+use crate::experiment::{Entrant, Plan};
+use crate::figure::sheet::printable;
+use crate::figure::style::{COLOURS, DASHES, INK, Marker, OUTSIDE_COLOURS, PAPER, Stroke, mix};
 
 /// The kinds of optimisers in the order of their colours and markers.
 const KINDS: [&str; 8] =
@@ -16,56 +14,80 @@ const KINDS: [&str; 8] =
 const MOST_IN_A_PANEL: usize = 8;
 
 /// How the optimisers of a field look, by label: colour tells the kind, dashes the formulation, the
-/// marker the kind or, of a hybrid, what searches first. Of several that share all this, every other one
+/// marker the kind or, of a hybrid, what searches first. Kinds of other programs have colours that none of this program's
+/// has. Of several that share all this, every other one
 /// has hollow markers, and later ones lighter and darker colours.
 #[derive(Debug, Clone)]
 pub struct Looks {
     /// Label, kind and stroke in the field's order.
-    field: Vec<(String, &'static str, Stroke)>,
+    field: Vec<(String, String, Stroke)>,
+    /// Groups of instances as charts write them.
+    titles: HashMap<String, String>,
 }
 
-fn place_of(kind: &str) -> usize {
-    KINDS.iter().position(|name| *name == kind).unwrap_or(KINDS.len() - 1)
+/// The kinds of a field that are not of this program, in its order.
+fn outsiders(field: &[Entrant]) -> Vec<&str> {
+    let mut kinds: Vec<&str> = Vec::new();
+    for kind in field.iter().map(|entrant| entrant.kind.as_str()) {
+        if !KINDS.contains(&kind) && !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    kinds
 }
 
-fn stroke(settings: &Settings, twins: usize) -> Stroke {
-    let marked = match settings {
-        Settings::Hybrid(hybrid) => hybrid.search.name(),
-        plain => plain.name(),
-    };
-    let dashes = match settings.formulation() {
-        Formulation::TimeFree => DASHES[0],
-        Formulation::Scaled => DASHES[1],
-        Formulation::Raw => DASHES[2],
-    };
-    let colour = COLOURS[place_of(settings.name())];
-    let colour = match twins / 2 % 3 {
-        0 => colour,
-        1 => mix(colour, PAPER, 0.4),
-        _ => mix(colour, INK, 0.5),
-    };
-    let plain = Stroke { dashes, hollow: twins % 2 == 1, ..Stroke::plain(colour, 0.32) };
-    // Six of a kind have its own marker, the next six another.
-    plain.with_marker(Marker::ALL[(place_of(marked) + twins / 6) % Marker::ALL.len()])
+/// A kind's place among the markers, and its colour.
+fn kind_of(kind: &str, outsiders: &[&str]) -> (usize, plotters::style::RGBColor) {
+    if let Some(place) = KINDS.iter().position(|name| *name == kind) {
+        return (place, COLOURS[place]);
+    }
+    let place = outsiders.iter().position(|name| *name == kind).unwrap_or_default();
+    (place, OUTSIDE_COLOURS[place % OUTSIDE_COLOURS.len()])
 }
 
 impl Looks {
     /// The looks of a field.
     pub fn of(field: &[Entrant]) -> Self {
+        Self::with_spaces(field, &[])
+    }
+
+    /// The looks of a plan's field, and the titles of its groups.
+    pub fn of_plan(plan: &Plan) -> Self {
+        let spaces = plan.instances.iter().map(|instance| instance.subject.spaces());
+        let spaces = spaces.max_by_key(Vec::len).unwrap_or_default();
+        let titles = plan.instances.iter().map(|i| (printable(&i.group), i.title.clone()));
+        Self { titles: titles.collect(), ..Self::with_spaces(&plan.optimisers, &spaces) }
+    }
+
+    fn with_spaces(field: &[Entrant], spaces: &[String]) -> Self {
+        let outsiders = outsiders(field);
         let mut seen = HashMap::new();
         let look = |entrant: &Entrant| {
-            let settings = &entrant.settings;
-            let search = match settings {
-                Settings::Hybrid(hybrid) => hybrid.search.name(),
-                _ => "",
+            let asked = entrant.formulation.as_ref();
+            let space = asked.and_then(|asked| spaces.iter().position(|space| space == asked));
+            let space = space.unwrap_or(0);
+            let alike = (entrant.kind.clone(), entrant.search.clone(), space);
+            let twins = seen.entry(alike).or_insert(0);
+            let (_, colour) = kind_of(&entrant.kind, &outsiders);
+            let colour = match *twins / 2 % 3 {
+                0 => colour,
+                1 => mix(colour, PAPER, 0.4),
+                _ => mix(colour, INK, 0.5),
             };
-            let same = (settings.name(), search, settings.formulation().name());
-            let twins = seen.entry(same).or_insert(0);
-            let stroke = stroke(settings, *twins);
+            let dashes = DASHES[space % DASHES.len()];
+            let plain = Stroke { dashes, hollow: *twins % 2 == 1, ..Stroke::plain(colour, 0.32) };
+            let (place, _) = kind_of(entrant.search.as_ref().unwrap_or(&entrant.kind), &outsiders);
+            // Six of a kind have its own marker, the next six another.
+            let stroke = plain.with_marker(Marker::ALL[(place + *twins / 6) % Marker::ALL.len()]);
             *twins += 1;
-            (printable(&entrant.label), settings.name(), stroke)
+            (printable(&entrant.label), printable(&entrant.kind), stroke)
         };
-        Self { field: field.iter().map(look).collect() }
+        Self { field: field.iter().map(look).collect(), titles: HashMap::new() }
+    }
+
+    /// A group of instances as charts write it; other texts as they are.
+    pub(super) fn title(&self, group: &str) -> String {
+        self.titles.get(group).map_or_else(|| group.to_owned(), Clone::clone)
     }
 
     /// Labels in the field's order.
@@ -73,7 +95,7 @@ impl Looks {
         self.field.iter().map(|(label, _, _)| label.as_str())
     }
 
-    fn find(&self, label: &str) -> Option<(usize, &(String, &'static str, Stroke))> {
+    fn find(&self, label: &str) -> Option<(usize, &(String, String, Stroke))> {
         self.field.iter().enumerate().find(|(_, (name, _, _))| name == label)
     }
 
@@ -93,15 +115,15 @@ impl Looks {
     }
 
     /// The optimiser's kind.
-    pub(super) fn kind(&self, label: &str) -> &'static str {
+    pub(super) fn kind(&self, label: &str) -> &str {
         self.find(label).map_or("", |(_, (_, kind, _))| kind)
     }
 
     /// The kinds of the field, each once.
-    pub(super) fn kinds(&self) -> Vec<&'static str> {
-        let mut kinds: Vec<&'static str> = Vec::new();
+    pub(super) fn kinds(&self) -> Vec<&str> {
+        let mut kinds: Vec<&str> = Vec::new();
         for (_, kind, _) in &self.field {
-            if !kinds.contains(kind) {
+            if !kinds.contains(&kind.as_str()) {
                 kinds.push(kind);
             }
         }

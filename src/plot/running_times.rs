@@ -2,21 +2,21 @@
 
 use polars::prelude::DataFrame;
 
-use super::axis::Axis;
 use super::convergence::{curve_line, faint};
-use super::curves::{Curve, MOST_PANELS, curves, facets, range, stepped};
-use super::figure::{Figure, PlotError};
+use super::curves::{Curve, MOST_PANELS, curves, facets, stepped};
 use super::looks::Looks;
-use super::marks::{Line, Mark};
-use super::panel::{MARGIN, Panel};
-use super::style::Stroke;
+use crate::figure::axis::Axis;
+use crate::figure::marks::{Line, Mark};
+use crate::figure::panel::{MARGIN, Panel, range};
+use crate::figure::style::Stroke;
+use crate::figure::{Figure, FigureError};
 
 /// Share of pairs of run and target reached against evaluations, from the table
 /// `running-time-distribution`; thin lines go on with simulated restarts. Of too many groups only all together are drawn.
 pub fn running_time_distribution(
     frame: &DataFrame,
     looks: &Looks,
-) -> Result<Option<Figure>, PlotError> {
+) -> Result<Option<Figure>, FigureError> {
     let shares = ["share of runs", "share with restarts"];
     let mut curves = curves(frame, "group", "evaluations", &shares)?;
     if facets(&curves, looks).is_none_or(|facets| facets.len() > MOST_PANELS) {
@@ -46,7 +46,7 @@ pub fn expected_running_time(
     frame: &DataFrame,
     looks: &Looks,
     symbol: &str,
-) -> Result<Option<Figure>, PlotError> {
+) -> Result<Option<Figure>, FigureError> {
     let curves = curves(frame, "group", "above least", &["expected running time"])?;
     let Some(facets) = facets(&curves, looks) else { return Ok(None) };
     let all = || curves.iter().flat_map(|c| &c.points).filter(|(_, y)| y[0].is_finite());
@@ -76,7 +76,7 @@ pub fn profiles(
     looks: &Looks,
     time: &str,
     label: &str,
-) -> Result<Option<Figure>, PlotError> {
+) -> Result<Option<Figure>, FigureError> {
     let curves = curves(frame, "target", time, &["share"])?;
     let Some(facets) = facets(&curves, looks) else { return Ok(None) };
     let positive = curves.iter().flat_map(|c| &c.points).map(|(x, _)| *x).filter(|x| *x > 0.0);

@@ -11,13 +11,13 @@ use polars::prelude::*;
 use resvg::usvg;
 
 use super::curves::curves;
-use super::figure::{Figure, png};
 use super::{
     Looks, Swept, base_attitude, convergence, critical_difference, derivatives, effect_sizes,
     expected_running_time, final_costs, joint_angles, pareto, profiles, running_time_distribution,
     snapshots, sweep,
 };
 use crate::experiment::Entrant;
+use crate::figure::{Figure, png};
 use crate::optimiser::{Hybrid, Settings};
 use crate::reorientation::{JointMotion, Motion, TaskFile};
 

@@ -27,8 +27,14 @@ impl Formulation {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Raw, Self::Scaled, Self::TimeFree];
 
+    /// The formulation of a name; the preferred one where none is asked for.
+    pub fn named(name: Option<&str>) -> Option<Self> {
+        let Some(name) = name else { return Some(Self::TimeFree) };
+        Self::ALL.into_iter().find(|known| known.name() == name)
+    }
+
     /// The name used in files and tables.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Raw => "raw",
             Self::Scaled => "scaled",

@@ -1,20 +1,40 @@
-//! The reorientation task as a problem to search: its fitness in several formulations.
+//! The reorientation task: a problem to search in several formulations, and a subject of experiments.
 
 mod best_known;
 mod derivatives;
+#[cfg(feature = "harness")]
+mod exhibits;
+mod export;
 mod fitness;
 mod formulation;
+#[cfg(feature = "harness")]
+mod kind;
 mod measure;
 mod motion;
+#[cfg(feature = "harness")]
+mod poses;
 mod published;
 mod settings;
+#[cfg(feature = "harness")]
+mod subject;
+#[cfg(feature = "harness")]
+mod sweep;
+#[cfg(feature = "harness")]
+mod symbols;
 
 pub use best_known::{BestKnown, fingerprint};
+#[cfg(feature = "harness")]
+pub use exhibits::{SAMPLES, write_motion_figures};
+#[cfg(feature = "harness")]
+pub use export::write_motions;
+pub use export::{ExportError, INTERVALS, MotionFormat, write_motion};
 pub use fitness::{Accuracy, Assessment, Reorientation};
 pub use formulation::{Formulated, Formulation};
+#[cfg(feature = "harness")]
+pub use kind::ReorientationTask;
 pub use measure::Workspace;
 pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};
-#[cfg(feature = "harness")]
-pub(crate) use settings::DEFAULTS;
 pub use settings::{Boxes, TaskFile, TrajectoryTable};
+#[cfg(feature = "harness")]
+pub use subject::TaskSubject;

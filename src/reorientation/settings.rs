@@ -13,7 +13,7 @@ use crate::task::{Task, TaskTable};
 use crate::trajectory::{Family, Limits, Peaks};
 
 /// The paper's task and the default settings.
-pub(crate) const DEFAULTS: &str = include_str!("defaults.toml");
+pub(super) const DEFAULTS: &str = include_str!("defaults.toml");
 
 /// Most free coefficients a joint; beyond, powers of `t` no longer tell shapes apart.
 const MOST_TERMS: usize = 16;

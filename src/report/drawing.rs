@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use super::PageError;
 use super::embedded::Embedded;
-use crate::plot::{Chart, PlotError};
+use super::error::ReportError;
+use crate::exhibit::Chart;
+use crate::figure::FigureError;
 
 /// Drawings wider than a column and a half of a journal take the width of the page \[px\].
 const WIDE: f64 = 500.0;
@@ -19,9 +20,9 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    pub(super) fn of(chart: &Chart) -> Result<Self, PageError> {
+    pub(super) fn of(chart: &Chart) -> Result<Self, ReportError> {
         let (svg, [width, height]) =
-            inline(&chart.figure.svg()?, &chart.name).ok_or_else(|| PlotError::Convert {
+            inline(&chart.figure.svg()?, &chart.name).ok_or_else(|| FigureError::Convert {
                 format: "drawing of a page",
                 reason: "its size is not where it should be".to_owned(),
             })?;

@@ -1,15 +1,15 @@
 //! The page of an experiment: one HTML file with everything in it, which asks for no other and for no network.
 //!
-//! [`Page`] says what goes into it; `page.html` is its frame, `page.css` its look, and the scripts, one after the
+//! `Page` says what goes into it; `page.html` is its frame, `page.css` its look, and the scripts, one after the
 //! other in one module, do what needs a reader's hand: sorting, filtering, downloads, the view of the motion.
 //! The same results give the same page byte for byte.
 
 mod drawing;
 mod embedded;
+mod error;
 mod page;
 mod provenance;
-mod scene;
+mod write;
 
-pub use page::{Page, PageError};
-pub use provenance::{Fact, Origin, provenance};
-pub use scene::{JointScene, MOST_SCENES, Scene, scenes};
+pub use error::ReportError;
+pub use write::{Report, write};

@@ -1,7 +1,5 @@
 //! The page.
 
-use std::io;
-
 use minijinja::Environment;
 use minijinja::value::Serde;
 use polars::prelude::*;
@@ -9,50 +7,30 @@ use serde::Serialize;
 
 use super::drawing::Drawing;
 use super::embedded::Embedded;
-use super::{Fact, Scene};
-use crate::analysis::tables::Table;
-use crate::analysis::{Finding, csv};
-use crate::plot::{Chart, PlotError};
+use super::error::ReportError;
+use super::provenance::Fact;
+use crate::analysis::csv;
+use crate::exhibit::{Chart, Finding, Scene, Table};
 
 /// What a page is made of.
 #[derive(Debug, Clone, Copy)]
-pub struct Page<'a> {
+pub(super) struct Page<'a> {
     /// The experiment's name.
-    pub name: &'a str,
+    pub(super) name: &'a str,
     /// What is said first.
-    pub findings: &'a [Finding],
+    pub(super) findings: &'a [Finding],
     /// The motions to be shown; none for problems that have none.
-    pub scenes: &'a [Scene],
+    pub(super) scenes: &'a [Scene],
     /// How many instances have a motion, shown or not.
-    pub motions_found: usize,
+    pub(super) motions_found: usize,
     /// The charts.
-    pub charts: &'a [Chart],
+    pub(super) charts: &'a [Chart],
     /// The tables; curves are there to download.
-    pub tables: &'a [Table],
+    pub(super) tables: &'a [Table],
     /// Names and texts of the files that made the experiment.
-    pub files: &'a [(String, String)],
+    pub(super) files: &'a [(String, String)],
     /// How the runs were made.
-    pub facts: &'a [Fact],
-}
-
-/// A page that could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum PageError {
-    /// A chart could not be drawn.
-    #[error(transparent)]
-    Plot(#[from] PlotError),
-    /// A table could not be written out.
-    #[error("cannot write a table into a page")]
-    Table(#[from] PolarsError),
-    /// Data could not be put into it.
-    #[error("cannot put data into a page")]
-    Data(#[from] io::Error),
-    /// A motion could not be put into it.
-    #[error("cannot put a motion into a page")]
-    Motion(#[from] serde_json::Error),
-    /// The template could not be filled in.
-    #[error("cannot fill in a page")]
-    Template(#[from] minijinja::Error),
+    pub(super) facts: &'a [Fact],
 }
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -111,7 +89,7 @@ struct TableContent<'a> {
 
 impl Page<'_> {
     /// The file.
-    pub fn html(&self) -> Result<String, PageError> {
+    pub(super) fn html(&self) -> Result<String, ReportError> {
         let figures = self.charts.iter().map(|chart| self.figure(chart));
         let tables = self.tables.iter().map(|table| self.table(table));
         let content = Content {
@@ -122,8 +100,8 @@ impl Page<'_> {
             scenes: self.scenes,
             motions_found: self.motions_found,
             motions: Embedded::new(&motions(self.scenes)?)?,
-            figures: figures.collect::<Result<_, PageError>>()?,
-            tables: tables.collect::<Result<_, PageError>>()?,
+            figures: figures.collect::<Result<_, ReportError>>()?,
+            tables: tables.collect::<Result<_, ReportError>>()?,
             files: self.files,
             facts: self.facts,
         };
@@ -131,21 +109,21 @@ impl Page<'_> {
         Ok(Environment::new().render_named_str("page.html", TEMPLATE, Serde(&content))?)
     }
 
-    fn figure<'b>(&self, chart: &'b Chart) -> Result<FigureContent<'b>, PageError> {
+    fn figure<'b>(&self, chart: &'b Chart) -> Result<FigureContent<'b>, ReportError> {
         let is_here = self.tables.iter().any(|table| table.name == chart.table);
         Ok(FigureContent {
             name: &chart.name,
             title: &chart.title,
             caption: &chart.caption,
             drawing: Drawing::of(chart)?,
-            table: is_here.then_some(chart.table),
+            table: is_here.then_some(&*chart.table),
         })
     }
 
-    fn table<'b>(&self, table: &'b Table) -> Result<TableContent<'b>, PageError> {
+    fn table<'b>(&self, table: &'b Table) -> Result<TableContent<'b>, ReportError> {
         Ok(TableContent {
-            name: table.name,
-            title: title(table.name),
+            name: &table.name,
+            title: title(&table.name),
             caption: &table.caption,
             kinds: table.frame.columns().iter().map(kind).collect::<Vec<_>>().join(" "),
             data: Embedded::new(&String::from_utf8_lossy(&csv(&table.frame)?))?,
@@ -198,8 +176,7 @@ mod tests {
 
     fn page(name: &str, caption: &str) -> String {
         let frame = df!("optimiser" => ["a", "</script>"], "J" => [0.5, f64::INFINITY]).unwrap();
-        let table =
-            Table { name: "first-feasible", caption: caption.to_owned(), frame, is_curve: false };
+        let table = Table::of("first-feasible", caption, frame);
         let page = Page {
             name,
             findings: &[],

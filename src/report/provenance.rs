@@ -5,66 +5,70 @@ use std::collections::BTreeMap;
 use polars::prelude::*;
 use serde::Serialize;
 
+use crate::experiment::schema::{clocks, runs};
 use crate::experiment::{Plan, Store, StoreError};
 
 /// One thing to know about how runs were made.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Fact {
+pub(super) struct Fact {
     /// What it is.
-    pub name: &'static str,
+    pub(super) name: String,
     /// Its values; where runs differ, each with the number of them.
-    pub values: Vec<Origin>,
+    pub(super) values: Vec<Origin>,
 }
 
 /// A value and the number of runs that have it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Origin {
+pub(super) struct Origin {
     /// The value.
-    pub value: String,
+    pub(super) value: String,
     /// Number of runs.
-    pub runs: usize,
+    pub(super) runs: usize,
 }
 
-/// The columns of `runs` that tell, and what to call them.
-const COLUMNS: [(&str, &str); 5] = [
-    ("version", "Version of driftless"),
-    ("commit", "Commit"),
-    ("cpu", "Processor"),
-    ("lanes", "Places of a path evaluated at once"),
-    ("status", "How runs ended"),
-];
+/// The columns of `runs` that tell, and what to call them; behind these stand the subjects' own.
+const COLUMNS: [(&str, &str); 3] =
+    [(runs::VERSION, "Version of driftless"), (runs::COMMIT, "Commit"), (runs::CPU, "Processor")];
 
 /// What the stored runs of a plan say of how they were made. Nothing depends on when it is asked.
-pub fn provenance(plan: &Plan, store: &Store) -> Result<Vec<Fact>, StoreError> {
+pub(super) fn provenance(plan: &Plan, store: &Store) -> Result<Vec<Fact>, StoreError> {
     let planned = plan.places();
     let wanted = |key: &str| planned.contains_key(key);
-    let mut counts = vec![Counts::default(); COLUMNS.len()];
+    let own = plan.facts().iter().filter_map(|f| Some((f.name.as_str(), f.provenance.as_deref()?)));
+    let own: Vec<(&str, &str)> = own.collect();
+    let columns: Vec<(&str, &str)> = COLUMNS
+        .into_iter()
+        .chain(own.iter().copied())
+        .chain([(runs::STATUS, "How runs ended")])
+        .collect();
+    let mut counts = vec![Counts::default(); columns.len()];
     let mut dates = Counts::default();
     let mut names: Vec<&str> = COLUMNS.iter().map(|(column, _)| *column).collect();
-    names.extend(["key", "date"]);
-    store.visit("runs", &names, wanted, |frame| {
-        for ((name, _), counts) in COLUMNS.iter().zip(&mut counts) {
+    names.extend([runs::STATUS, runs::KEY, runs::DATE]);
+    let optional: Vec<&str> = own.iter().map(|(column, _)| *column).collect();
+    store.visit("runs", &names, &optional, wanted, |frame| {
+        for ((name, _), counts) in columns.iter().zip(&mut counts) {
             counts.add(frame.column(name)?)?;
         }
-        dates.add(frame.column("date")?)
+        dates.add(frame.column(runs::DATE)?)
     })?;
     let mut threads = Counts::default();
-    store.visit("clocks", &["key", "threads"], wanted, |frame| {
-        threads.add(&one_row_a_run(frame)?)
+    store.visit("clocks", &[clocks::KEY, clocks::THREADS], &[], wanted, |frame| {
+        threads.add(&one_row_per_run(frame)?)
     })?;
-    let named = COLUMNS.iter().map(|(_, name)| *name).zip(counts);
+    let named = columns.iter().map(|(_, name)| *name).zip(counts);
     let facts = named.chain([("Runs at a time", threads)]);
-    let facts = facts.map(|(name, counts)| Fact { name, values: counts.values() });
+    let facts = facts.map(|(name, counts)| Fact { name: name.to_owned(), values: counts.values() });
     Ok(facts.chain([dates.period()]).filter(|fact| !fact.values.is_empty()).collect())
 }
 
 /// The rows at which another run's begin.
-fn one_row_a_run(clocks: &DataFrame) -> PolarsResult<Column> {
-    let keys = clocks.column("key")?.str()?;
+fn one_row_per_run(table: &DataFrame) -> PolarsResult<Column> {
+    let keys = table.column(clocks::KEY)?.str()?;
     let mut before = None;
     let begins = keys.iter().map(|key| std::mem::replace(&mut before, key) != key);
     let begins = BooleanChunked::from_iter_values("begins".into(), begins);
-    clocks.column("threads")?.filter(&begins)
+    table.column(clocks::THREADS)?.filter(&begins)
 }
 
 /// How often each value stands in a column.
@@ -98,6 +102,6 @@ impl Counts {
         };
         let runs = self.0.values().sum();
         let values = value.into_iter().map(|value| Origin { value, runs }).collect();
-        Fact { name: "Runs ended", values }
+        Fact { name: "Runs ended".to_owned(), values }
     }
 }

@@ -4,7 +4,7 @@ use super::composite::Composite;
 use super::points::{Bounds, Points};
 
 /// A box-bounded minimisation problem.
-pub trait Problem: Sync {
+pub trait Problem: Send + Sync {
     /// The box; its length is the problem's dimension.
     fn bounds(&self) -> &Bounds;
 

@@ -3,9 +3,10 @@
 use polars::prelude::*;
 use rayon::prelude::*;
 
-use super::{Analysis, Table};
-use crate::analysis::Run;
+use crate::analysis::grouped::Analysis;
 use crate::analysis::statistics::quartiles;
+use crate::exhibit::Table;
+use crate::experiment::Run;
 
 /// Points of a curve, spaced evenly on a logarithmic axis.
 const POINTS: usize = 200;

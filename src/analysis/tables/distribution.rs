@@ -3,9 +3,10 @@
 use polars::prelude::*;
 
 use super::fixed_target::times;
-use super::{Analysis, Table};
-use crate::analysis::Run;
+use crate::analysis::grouped::{Analysis, trial};
 use crate::analysis::statistics::{Trial, simulated_restarts};
+use crate::exhibit::Table;
+use crate::experiment::Run;
 use crate::search::Rng;
 
 /// Targets: the least cost known and 10², …, 10⁻⁸ above it, five to a power of ten, as COCO has them.
@@ -103,7 +104,7 @@ fn times_of(analysis: &Analysis<'_>, group: &[&Run]) -> Times {
     for runs in by_instance.chunk_by(|a, b| a.instance == b.instance) {
         let least = analysis.targets.least[runs[0].instance];
         for target in differences().map(|difference| least + difference) {
-            let trials: Vec<Trial> = runs.iter().map(|run| run.trial(target)).collect();
+            let trials: Vec<Trial> = runs.iter().map(|run| trial(run, target)).collect();
             found.runs.extend(times(&trials));
             found.restarted.extend(simulated_restarts(&trials, RESTARTS, |n| rng.index(n)));
         }

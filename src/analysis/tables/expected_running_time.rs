@@ -4,9 +4,10 @@ use polars::prelude::*;
 use rayon::prelude::*;
 
 use super::distribution::differences;
-use super::{Analysis, Table};
-use crate::analysis::Run;
+use crate::analysis::grouped::{Analysis, trial};
 use crate::analysis::statistics::{Trial, expected_running_time};
+use crate::exhibit::Table;
+use crate::experiment::Run;
 
 /// A line of the table: a group's runs, and by how much the targets of their instances lie above the least cost.
 struct Line<'a> {
@@ -36,7 +37,7 @@ pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
 /// Successes and the expected running time.
 fn told(analysis: &Analysis<'_>, line: &Line<'_>) -> (u64, f64) {
     let target = |run: &Run| analysis.targets.least[run.instance] + line.difference;
-    let trials: Vec<Trial> = line.group.iter().map(|run| run.trial(target(run))).collect();
+    let trials: Vec<Trial> = line.group.iter().map(|run| trial(run, target(run))).collect();
     let successes = trials.iter().filter(|trial| trial.solved).count();
     (successes as u64, expected_running_time(&trials))
 }

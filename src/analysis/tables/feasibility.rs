@@ -2,9 +2,10 @@
 
 use polars::prelude::*;
 
-use super::{Analysis, Table};
-use crate::analysis::Run;
+use crate::analysis::grouped::Analysis;
 use crate::analysis::statistics::quartiles;
+use crate::exhibit::Table;
+use crate::experiment::Run;
 
 /// One line a group and optimiser.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
@@ -22,5 +23,5 @@ pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
         "quartile 3" => quartiles.iter().map(|q| q[2]).collect::<Vec<_>>(),
     )?;
     let caption = "Evaluations until a point within all limits was evaluated; infinite for a run without one.";
-    Ok(Table::new("first-feasible", caption, frame))
+    Ok(Table::of("first-feasible", caption, frame))
 }

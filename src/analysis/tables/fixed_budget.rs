@@ -3,8 +3,10 @@
 use polars::prelude::*;
 use rayon::prelude::*;
 
-use super::{Analysis, Table, interval};
+use super::interval::interval;
+use crate::analysis::grouped::Analysis;
 use crate::analysis::statistics::{median, quartiles};
+use crate::exhibit::Table;
 
 /// One line a group, number of evaluations and optimiser.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
@@ -39,7 +41,7 @@ pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     )?;
     let caption = "Best cost so far, as the search evaluated it, after so many evaluations: quartiles over the runs, \
         and the median's 95 % bootstrap percentile interval (1000 resamples; fewer of samples above 1000, 400 at least).";
-    Ok(Table::new("fixed-budget", caption, frame))
+    Ok(Table::of("fixed-budget", caption, frame))
 }
 
 /// Powers of ten up to a budget, and the budget.

@@ -3,8 +3,10 @@
 use polars::prelude::*;
 use rayon::prelude::*;
 
-use super::{Analysis, Table, interval};
+use super::interval::interval;
+use crate::analysis::grouped::{Analysis, trial};
 use crate::analysis::statistics::{Trial, expected_running_time, quartiles};
+use crate::exhibit::Table;
 
 /// One line an instance and target.
 pub(super) fn targets(analysis: &Analysis<'_>) -> PolarsResult<Table> {
@@ -28,7 +30,7 @@ pub(super) fn targets(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     let caption = "Costs to reach, and where they come from: stated in experiment.toml or following there from the best \
         known cost; else those of Moré and Wild, τ of the way from the least cost that any of the runs found to that in \
         the middle of the box, on the task the motion without bumps.";
-    Ok(Table::new("targets", caption, frame))
+    Ok(Table::of("targets", caption, frame))
 }
 
 /// A line of the table: group, target, and the trials.
@@ -67,7 +69,7 @@ pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
         for each success, with its 95 % bootstrap percentile interval (1000 resamples; fewer of samples above 1000, 400 at \
         least). Quartiles count a run that does not reach the target as infinite. A run that panicked counts with what it \
         had reached. Evaluations of optimisers that use derivatives come with them.";
-    Ok(Table::new("fixed-target", caption, frame))
+    Ok(Table::of("fixed-target", caption, frame))
 }
 
 fn lines<'a>(analysis: &'a Analysis<'_>) -> Vec<Line<'a>> {
@@ -77,7 +79,7 @@ fn lines<'a>(analysis: &'a Analysis<'_>) -> Vec<Line<'a>> {
             let [optimiser, label] = analysis.labels(group);
             let trials: Vec<Trial> = group
                 .iter()
-                .filter_map(|run| Some(run.trial(*analysis.targets.values[run.instance].get(k)?)))
+                .filter_map(|run| Some(trial(run, *analysis.targets.values[run.instance].get(k)?)))
                 .collect();
             if !trials.is_empty() {
                 let target = analysis.target_label_of(k, label);

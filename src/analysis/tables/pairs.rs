@@ -2,8 +2,9 @@
 
 use polars::prelude::*;
 
-use super::{Analysis, Table};
 use crate::analysis::blocks::Blocks;
+use crate::analysis::grouped::Analysis;
+use crate::exhibit::Table;
 
 /// One line a pair.
 pub(super) fn table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsResult<Table> {
@@ -26,5 +27,5 @@ pub(super) fn table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsResult<Ta
          half, in the mean over instances. {}",
         blocks.told()
     );
-    Ok(Table::new("pairs", caption, frame))
+    Ok(Table::of("pairs", caption, frame))
 }

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use polars::prelude::*;
 
-use super::{Analysis, Table};
+use crate::analysis::grouped::Analysis;
 use crate::analysis::statistics::{ProfileStep, data_profiles, performance_profiles};
+use crate::exhibit::Table;
 
 /// Both profiles, a curve an optimiser and target. A problem is an instance with a seed; those that an
 /// optimiser has not tried yet are left out.
@@ -54,7 +55,7 @@ fn problems(analysis: &Analysis<'_>, k: usize) -> (Vec<Vec<f64>>, Vec<usize>) {
     }
     let complete = |(&(instance, _), row): (&(usize, u64), &Vec<Option<f64>>)| {
         let row: Option<Vec<f64>> = row.iter().copied().collect();
-        row.map(|row| (row, analysis.plan.instances[instance].dimension()))
+        row.map(|row| (row, analysis.plan.instances[instance].subject.dimension()))
     };
     rows.iter().filter_map(complete).unzip()
 }

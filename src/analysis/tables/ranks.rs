@@ -2,9 +2,10 @@
 
 use polars::prelude::*;
 
-use super::{Analysis, Table};
 use crate::analysis::blocks::{ALPHA, Blocks};
+use crate::analysis::grouped::Analysis;
 use crate::analysis::statistics::{Friedman, cliques, critical_difference};
+use crate::exhibit::Table;
 
 /// One line: Friedman's test and what goes with it.
 pub(super) fn friedman_table(blocks: &Blocks) -> PolarsResult<Table> {
@@ -25,7 +26,7 @@ pub(super) fn friedman_table(blocks: &Blocks) -> PolarsResult<Table> {
          of mean ranks at level {ALPHA}. {}",
         blocks.told()
     );
-    Ok(Table::new("friedman", caption, frame))
+    Ok(Table::of("friedman", caption, frame))
 }
 
 /// One line an optimiser, the best first.
@@ -48,7 +49,7 @@ pub(super) fn table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsResult<Ta
          An optimiser without a clique differs from all. {}",
         blocks.told()
     );
-    Ok(Table::new("ranks", caption, frame))
+    Ok(Table::of("ranks", caption, frame))
 }
 
 /// The costs that the tests compare, one line a block.
@@ -63,7 +64,7 @@ pub(super) fn blocks_table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsRe
         optimisers.map(|o| Column::new(analysis.optimiser(o).into(), costs(o))).collect();
     let frame = df!(block => &blocks.names)?.hstack(&columns)?;
     let caption = format!("The costs that the tests compare. {}", blocks.told());
-    Ok(Table::new("blocks", caption, frame))
+    Ok(Table::of("blocks", caption, frame))
 }
 
 #[cfg(test)]

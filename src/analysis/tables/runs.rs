@@ -2,9 +2,10 @@
 
 use polars::prelude::*;
 
-use super::{Analysis, Table};
-use crate::analysis::Run;
-use crate::experiment::Instance;
+use crate::analysis::grouped::Analysis;
+use crate::analysis::summary::measure_columns;
+use crate::exhibit::Table;
+use crate::experiment::{Instance, Run};
 
 /// One line a stored run, in the plan's order. Nothing in it depends on the machine's speed.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
@@ -17,15 +18,14 @@ pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
         "optimiser" => analysis.runs.iter().map(|run| analysis.optimiser(run.optimiser)).collect::<Vec<_>>(),
         "seed" => counts(|run| run.seed),
         cost => reals(|run| run.cost),
-        "residual [°]" => reals(|run| run.residual_deg),
-        "t_f [s]" => reals(|run| run.duration),
+    )?;
+    let runs: Vec<Option<&Run>> = analysis.runs.iter().map(Some).collect();
+    let tail = df!(
         "evaluations" => counts(|run| run.evaluations),
         "budget" => counts(|run| run.budget),
     )?;
-    if !analysis.plan.instances.iter().any(Instance::is_task) {
-        frame = frame.drop_many(["residual [°]", "t_f [s]"]);
-    }
-    let caption = "All stored runs with their certified best costs, residuals and durations; a failed run's cost is \
+    frame = frame.hstack(&measure_columns(analysis.plan, &runs))?.hstack(tail.columns())?;
+    let caption = "All stored runs with their certified best costs, and what else is measured of them; a failed run's cost is \
         infinite.";
     Ok(Table::curve("runs", caption, frame))
 }

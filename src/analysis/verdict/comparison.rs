@@ -1,11 +1,11 @@
 //! Who won, by how much, and whether that is chance.
 
-use std::collections::HashSet;
-
-use super::words::{any_of, list, number, p_value, plural, some_of};
-use super::{Finding, running_time};
-use crate::analysis::Analysis;
+use super::running_time;
 use crate::analysis::blocks::{ALPHA, Blocks, Unit};
+use crate::analysis::grouped::Analysis;
+use crate::exhibit::Finding;
+use crate::exhibit::words::{any_of, list, number, p_value, plural, some_of};
+use crate::experiment::Instance;
 
 /// How a sentence on pairs begins.
 const WILCOXON: &str = "By Wilcoxon's test with Holm's correction at the 5 % level";
@@ -214,23 +214,19 @@ impl<'a> Standings<'a> {
         }
     }
 
-    /// What makes blocks alike: tasks that differ in more than their poses, and functions in shift or dimension alone.
+    /// What makes blocks alike, in the words of the subjects.
     fn dependence(&self) -> Option<&'static str> {
-        let instances = self.blocks.instances.iter().map(|&i| &self.analysis.plan.instances[i]);
-        let (tasks, functions): (Vec<_>, Vec<_>) = instances.partition(|i| i.is_task());
-        let names: HashSet<&str> = functions.iter().map(|i| i.subject.name()).collect();
-        if tasks.windows(2).any(|pair| pair[0].group != pair[1].group) {
-            Some(
-                "Settings of one task are not independent tasks, so p-values are smaller than they should be.",
-            )
-        } else if names.len() < functions.len() {
-            Some(
-                "Shifts and dimensions of one function are not independent functions, so p-values are smaller than they \
-                 should be.",
-            )
-        } else {
-            None
-        }
+        let plan = self.analysis.plan;
+        let mut own = plan.by_kind();
+        let own = own.iter_mut().map(|(_, instances)| {
+            let is_block = |instance: &&Instance| {
+                let blocks = self.blocks.instances.iter();
+                blocks.clone().any(|&i| plan.instances[i].label == instance.label)
+            };
+            instances.retain(is_block);
+            &*instances
+        });
+        own.filter_map(|i| i.first()?.subject.dependence(i)).next()
     }
 
     fn hopeless(&self) -> String {

@@ -1,57 +1,38 @@
 //! What a reader wants to know first, in words.
 
 mod comparison;
-mod motion;
 mod quality;
 mod running_time;
-mod sweep;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod truths;
-mod words;
 
 use std::collections::HashSet;
 
-use serde::Serialize;
-
-use super::Analysis;
-use crate::experiment::Instance;
-use words::plural;
-
-/// One thing that an experiment has to say.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Finding {
-    /// What one may ask.
-    pub question: String,
-    /// The answer, in a few sentences.
-    pub answer: String,
-}
-
-impl Finding {
-    fn new(question: &str, answer: impl Into<String>) -> Self {
-        Self { question: question.to_owned(), answer: answer.into() }
-    }
-}
+use super::grouped::Analysis;
+use crate::exhibit::words::plural;
+use crate::exhibit::{Exhibits, Finding};
 
 impl Analysis<'_> {
-    /// What the runs say, the most important first. The numbers are rounded to what does not depend on the
-    /// machine.
-    pub fn findings(&self) -> Vec<Finding> {
+    /// What the runs say, the most important first, together with what the subjects say of their own. The numbers are
+    /// rounded to what does not depend on the machine.
+    pub fn findings(&self, own: &Exhibits) -> Vec<Finding> {
         let mut findings: Vec<Finding> = missing(self).into_iter().collect();
         if self.runs.is_empty() {
             return findings;
         }
         let groups: HashSet<&str> =
             self.plan.instances.iter().map(|instance| instance.group.as_str()).collect();
-        match self.plan.optimisers.len() {
-            1 if groups.len() > 1 && self.plan.instances.iter().all(Instance::is_task) => {
-                findings.extend(sweep::finding(self));
+        match &own.sweep {
+            Some(sweep) if self.plan.optimisers.len() == 1 && groups.len() > 1 => {
+                findings.push(sweep.clone());
             }
             _ => findings.extend(comparison::findings(self)),
         }
-        findings.extend(quality::findings(self));
-        findings.extend(motion::finding(self));
+        findings.extend(own.quality.clone());
+        findings.extend(quality::finding(self));
+        findings.extend(own.findings.iter().cloned());
         findings
     }
 }

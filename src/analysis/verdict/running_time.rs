@@ -1,9 +1,10 @@
 //! How many evaluations the winner needs, and how many the others.
 
-use super::words::{factor, list, plural, some_of};
 use crate::analysis::blocks::Blocks;
+use crate::analysis::grouped::{Analysis, trial};
 use crate::analysis::statistics::{Trial, expected_running_time};
-use crate::analysis::{Analysis, Run};
+use crate::exhibit::words::{factor, list, plural, some_of};
+use crate::experiment::Run;
 
 /// Most optimisers whose factor is told.
 const MOST_TOLD: usize = 4;
@@ -138,7 +139,7 @@ fn times(analysis: &Analysis<'_>, instances: &[usize], k: usize) -> Times {
     for run in analysis.runs {
         if let Some(place) = place(run) {
             let target = analysis.targets.values[run.instance][k];
-            trials[run.optimiser][place].push(run.trial(target));
+            trials[run.optimiser][place].push(trial(run, target));
         }
     }
     let time = |trials: &Vec<Trial>| expected_running_time(trials);
@@ -162,7 +163,7 @@ fn factors(analysis: &Analysis<'_>, reached: &[(usize, f64)]) -> String {
 /// Whose evaluations say more than those of others.
 fn derivatives(analysis: &Analysis<'_>, optimisers: impl Iterator<Item = usize>) -> String {
     let all: Vec<usize> = optimisers.collect();
-    let uses = |&o: &usize| analysis.plan.optimisers[o].settings.optimiser().needs_derivatives();
+    let uses = |&o: &usize| analysis.plan.optimisers[o].needs_derivatives;
     let names: Vec<&str> =
         all.iter().copied().filter(uses).map(|o| analysis.optimiser(o)).collect();
     match names.len() {

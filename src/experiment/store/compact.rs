@@ -7,7 +7,8 @@ use std::time::{Duration, SystemTime};
 use polars::prelude::*;
 
 use super::read::{is_batch, only};
-use super::{SEVERAL, Stack, Store, StoreError, TABLES, io_error};
+use super::stack::Stack;
+use super::{SEVERAL, Store, StoreError, TABLES, io_error};
 use crate::digest::digest;
 use crate::output::sync_folder;
 use crate::search::Watch;

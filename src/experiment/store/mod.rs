@@ -24,7 +24,7 @@ use polars::prelude::*;
 pub use compact::Compaction;
 
 use self::stack::Stack;
-use super::Record;
+use super::record::Record;
 use crate::digest::digest;
 use crate::output::{FileError, create_folder, write_file};
 

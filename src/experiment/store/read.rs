@@ -6,7 +6,9 @@ use std::io;
 
 use polars::prelude::*;
 
-use super::{SEVERAL, Stack, Store, StoreError, TABLES, io_error};
+use super::stack::Stack;
+use super::{SEVERAL, Store, StoreError, TABLES, io_error};
+use crate::experiment::schema::runs;
 
 impl Store {
     /// The keys of all stored runs.
@@ -24,12 +26,14 @@ impl Store {
         Ok(self.batches()?.len())
     }
 
-    /// Shows one table's `columns` of the `wanted` runs to the visitor, batch by batch. No run is shown
+    /// Shows one table's `columns` of the `wanted` runs to the visitor, batch by batch; all columns where none are named.
+    /// `optional` columns are null where a batch has none of the name. No run is shown
     /// twice, and none that is stored is left out, though others write and compact meanwhile.
     pub fn visit(
         &self,
         table: &str,
         columns: &[&str],
+        optional: &[&str],
         wanted: impl Fn(&str) -> bool,
         mut visitor: impl FnMut(&DataFrame) -> PolarsResult<()>,
     ) -> Result<(), StoreError> {
@@ -42,7 +46,7 @@ impl Store {
             if new.is_empty() {
                 return Ok(());
             }
-            let mut frame = self.read_file(table, batch, Some(columns))?;
+            let mut frame = self.read_columns(table, batch, columns, optional)?;
             if new.len() < count {
                 frame = only(&frame, |key| new.contains(key))?;
             }
@@ -60,12 +64,13 @@ impl Store {
     ) -> Result<DataFrame, StoreError> {
         let places: HashMap<&str, usize> = keys.enumerate().map(|(i, key)| (key, i)).collect();
         let mut all = Stack::default();
-        self.visit(table, &[], |key| places.contains_key(key), |frame| all.push(frame.clone()))?;
+        let wanted = |key: &str| places.contains_key(key);
+        self.visit(table, &[], &[], wanted, |frame| all.push(frame.clone()))?;
         let all = all.into_table()?;
         if all.height() == 0 {
             return Ok(all);
         }
-        let place = all.column("key")?.str()?.iter().map(|key| key.and_then(|k| places.get(k)));
+        let place = all.column(runs::KEY)?.str()?.iter().map(|key| key.and_then(|k| places.get(k)));
         let place: Vec<usize> = place.map(|place| place.copied().unwrap_or(usize::MAX)).collect();
         let mut order: Vec<u32> = (0..all.height() as u32).collect();
         order.sort_by_key(|&row| place[row as usize]);
@@ -141,8 +146,8 @@ impl Store {
         if is_key(batch) {
             return Ok(vec![batch.to_owned()]);
         }
-        let frame = self.read_file("runs", batch, Some(&["key"]))?;
-        Ok(frame.column("key")?.str()?.iter().flatten().map(str::to_owned).collect())
+        let frame = self.read_file("runs", batch, Some(&[runs::KEY]))?;
+        Ok(frame.column(runs::KEY)?.str()?.iter().flatten().map(str::to_owned).collect())
     }
 
     /// Number of rows of a batch's traces.
@@ -151,6 +156,31 @@ impl Store {
         let rows = |file| ParquetReader::new(file).num_rows();
         let rows = File::open(&path).map_err(PolarsError::from).and_then(rows);
         rows.map_err(|source| StoreError::Damaged { path, source })
+    }
+
+    /// Reads some columns of a batch's file of a table; optional ones that it lacks are null.
+    fn read_columns(
+        &self,
+        table: &str,
+        batch: &str,
+        columns: &[&str],
+        optional: &[&str],
+    ) -> Result<DataFrame, StoreError> {
+        if optional.is_empty() {
+            return self.read_file(table, batch, Some(columns));
+        }
+        let path = self.path(table, batch);
+        let schema = |file| ParquetReader::new(file).schema();
+        let schema = File::open(&path).map_err(PolarsError::from).and_then(schema);
+        let schema = schema.map_err(|source| StoreError::Damaged { path, source })?;
+        let (has, lacks): (Vec<&str>, Vec<&str>) =
+            optional.iter().partition(|name| schema.get(name).is_some());
+        let mut frame = self.read_file(table, batch, Some(&[columns, &has].concat()))?;
+        for name in lacks {
+            let height = frame.height();
+            frame.with_column(Float64Chunked::full_null(name.into(), height).into_column())?;
+        }
+        Ok(frame)
     }
 
     /// Reads a batch's file of a table: some columns, or, where none are named, all.
@@ -189,7 +219,7 @@ pub(super) fn is_batch(name: &str) -> bool {
 
 /// The rows of some runs.
 pub(super) fn only(frame: &DataFrame, wanted: impl Fn(&str) -> bool) -> PolarsResult<DataFrame> {
-    let keys = frame.column("key")?.str()?;
+    let keys = frame.column(runs::KEY)?.str()?;
     let mask: BooleanChunked = keys.iter().map(|key| Some(key.is_some_and(&wanted))).collect();
     frame.filter(&mask)
 }

@@ -38,11 +38,28 @@ impl Stack {
     }
 }
 
+/// Tables below each other; a column that some lack is null there.
 fn joined(tables: impl IntoIterator<Item = DataFrame>) -> PolarsResult<DataFrame> {
     let mut all = DataFrame::empty();
-    for table in tables {
+    for mut table in tables {
+        if all.width() > 0 && all.schema() != table.schema() {
+            complete(&mut all, table.schema())?;
+            complete(&mut table, all.schema())?;
+            table = table.select(all.get_column_names_owned())?;
+        }
         all.vstack_mut_owned(table)?;
     }
     all.rechunk_mut();
     Ok(all)
+}
+
+/// Adds the columns that another table has beside, as nulls.
+fn complete(table: &mut DataFrame, other: &Schema) -> PolarsResult<()> {
+    let height = table.height();
+    for (name, kind) in other.iter() {
+        if table.column(name).is_err() {
+            table.with_column(Column::full_null(name.clone(), height, kind))?;
+        }
+    }
+    Ok(())
 }

@@ -92,6 +92,11 @@ impl Optimiser for Scp {
     fn needs_derivatives(&self) -> bool {
         true
     }
+
+    fn parts(&self) -> Option<(Box<dyn Optimiser>, usize)> {
+        let one = Self { starts: Some(NonZeroUsize::MIN), ..self.clone() };
+        Some((Box::new(one), self.random_starts()))
+    }
 }
 
 impl Scp {

@@ -1,0 +1,19 @@
+//! A mechanism over time as a page shows it in three dimensions.
+
+use serde::Serialize;
+use serde_json::Value;
+
+/// What a mechanism does over the best run of an instance, in the form that the page's view reads.
+///
+/// The view (`report/script/view.js`) shows a floating base with arms: `label`, `optimiser`, `seed`, `cost`,
+/// `duration`, `satellite`, `joints`, `frames` and `goal`, lengths in metres and angles in degrees.
+#[derive(Debug, Clone, Serialize)]
+#[serde(transparent)]
+pub struct Scene(Value);
+
+impl Scene {
+    /// From data that the view can read; none where they have no JSON form.
+    pub fn new(data: &impl Serialize) -> Option<Self> {
+        serde_json::to_value(data).ok().map(Self)
+    }
+}

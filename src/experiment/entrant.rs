@@ -1,0 +1,203 @@
+//! Who competes: an optimiser with all that determines its runs.
+
+use std::fmt;
+use std::num::NonZeroU64;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::instance::Instance;
+use super::subject::Unavailable;
+use crate::input::{Document, InputError};
+use crate::optimiser::{Optimiser, Settings};
+use crate::search::{Oracle, Rng, Stop};
+
+/// One optimiser of the field.
+#[derive(Clone)]
+#[non_exhaustive]
+pub struct Entrant {
+    /// The label given, or optimiser and, on subjects with several formulations, formulation; with changed settings
+    /// where the field has these more than once.
+    pub label: String,
+    /// The optimiser's name: what it is a kind of.
+    pub kind: String,
+    /// The name of the optimiser that searches first, of one that has two phases.
+    pub search: Option<String>,
+    /// All settings, as JSON; together with the formulation they determine a run.
+    pub settings: Value,
+    /// The formulation asked for; without it each subject's preferred one.
+    pub formulation: Option<String>,
+    /// Whether it can search only problems with derivatives.
+    pub needs_derivatives: bool,
+    /// Number of seeds, instead of the experiment's.
+    pub seeds: Option<NonZeroU64>,
+    /// Evaluations that each of its runs may spend, instead of the experiment's or the instance's
+    /// budget.
+    pub budget: Option<NonZeroU64>,
+    /// None for an optimiser of the program that made the results.
+    pub(super) optimiser: Option<Arc<dyn Optimiser>>,
+    /// Where it is one of the catalogue.
+    pub(super) catalogued: Option<Settings>,
+    pub(super) is_labelled: bool,
+}
+
+impl fmt::Debug for Entrant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = f.debug_struct("Entrant");
+        shown.field("label", &self.label).field("settings", &self.settings);
+        shown.finish_non_exhaustive()
+    }
+}
+
+/// An optimiser of the catalogue as a value of its own.
+struct Catalogued(Settings);
+
+impl Optimiser for Catalogued {
+    fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
+        self.0.optimiser().minimise(oracle, rng)
+    }
+
+    fn formulation(&self) -> Option<&str> {
+        self.0.optimiser().formulation()
+    }
+
+    fn needs_derivatives(&self) -> bool {
+        self.0.optimiser().needs_derivatives()
+    }
+
+    fn parts(&self) -> Option<(Box<dyn Optimiser>, usize)> {
+        self.0.optimiser().parts()
+    }
+}
+
+impl From<Settings> for Entrant {
+    fn from(settings: Settings) -> Self {
+        let search = match &settings {
+            Settings::Hybrid(hybrid) => Some(hybrid.search.name().to_owned()),
+            _ => None,
+        };
+        Self {
+            label: settings.title(),
+            kind: settings.name().to_owned(),
+            search,
+            settings: serde_json::to_value(&settings).unwrap_or_default(),
+            formulation: settings.formulation().map(str::to_owned),
+            needs_derivatives: settings.optimiser().needs_derivatives(),
+            seeds: None,
+            budget: None,
+            optimiser: Some(Arc::new(Catalogued(settings.clone()))),
+            catalogued: Some(settings),
+            is_labelled: false,
+        }
+    }
+}
+
+impl Entrant {
+    /// An optimiser of one's own. `settings` is all that determines its runs beside the seed, a version of its
+    /// code included: a stored run with the same is not done again.
+    pub fn new(
+        name: &str,
+        settings: impl Into<Value>,
+        optimiser: impl Optimiser + 'static,
+    ) -> Self {
+        Self {
+            label: name.to_owned(),
+            kind: name.to_owned(),
+            search: None,
+            settings: settings.into(),
+            formulation: optimiser.formulation().map(str::to_owned),
+            needs_derivatives: optimiser.needs_derivatives(),
+            seeds: None,
+            budget: None,
+            optimiser: Some(Arc::new(optimiser)),
+            catalogued: None,
+            is_labelled: true,
+        }
+    }
+
+    /// The same under another label.
+    #[must_use]
+    pub fn labelled(self, label: &str) -> Self {
+        Self { label: label.to_owned(), is_labelled: true, ..self }
+    }
+
+    /// The optimiser itself.
+    pub fn optimiser(&self) -> Result<&dyn Optimiser, Unavailable> {
+        self.optimiser.as_deref().ok_or_else(|| {
+            Unavailable::new(format!(
+                "the optimiser `{}` is of the program that made these results",
+                self.kind
+            ))
+        })
+    }
+
+    /// The formulation in which it searches an instance; empty where it has but one.
+    pub fn space(&self, instance: &Instance) -> String {
+        let preferred = || instance.subject.spaces().into_iter().next().unwrap_or_default();
+        self.formulation.clone().unwrap_or_else(preferred)
+    }
+
+    /// All that determines its runs beside formulation, seed and budget.
+    pub(super) fn identity(&self) -> Value {
+        let mut settings = self.settings.clone();
+        remove_formulation(&mut settings);
+        match self.catalogued {
+            Some(_) => settings,
+            None => serde_json::json!({ "outside": self.kind, "settings": settings }),
+        }
+    }
+}
+
+/// A run's formulation is part of its recipe, whether it was asked for or the subject's own.
+fn remove_formulation(value: &mut Value) {
+    if let Value::Object(map) = value {
+        map.shift_remove("formulation");
+        map.values_mut().for_each(remove_formulation);
+    }
+}
+
+/// The `outside` table of an `[[optimiser]]`: what results tell of another program's optimiser.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub(super) struct OutsideTable {
+    name: String,
+    /// JSON.
+    settings: toml::Spanned<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    formulation: Option<String>,
+    #[serde(default)]
+    needs_derivatives: bool,
+}
+
+impl OutsideTable {
+    pub(super) fn of(entrant: &Entrant) -> Self {
+        Self {
+            name: entrant.kind.clone(),
+            settings: toml::Spanned::new(0..0, entrant.settings.to_string()),
+            formulation: entrant.formulation.clone(),
+            needs_derivatives: entrant.needs_derivatives,
+        }
+    }
+
+    /// An entrant that can be reported and not be run.
+    pub(super) fn entrant(self, document: &Document) -> Result<Entrant, InputError> {
+        let settings = serde_json::from_str(self.settings.get_ref()).map_err(|error| {
+            let message = format!("found no JSON, expected the optimiser's settings: {error}");
+            document.error_at(self.settings.span(), message, None)
+        })?;
+        Ok(Entrant {
+            label: self.name.clone(),
+            kind: self.name,
+            search: None,
+            settings,
+            formulation: self.formulation,
+            needs_derivatives: self.needs_derivatives,
+            seeds: None,
+            budget: None,
+            optimiser: None,
+            catalogued: None,
+            is_labelled: true,
+        })
+    }
+}

@@ -1,0 +1,236 @@
+//! An experiment: read from a file, or put together in a program.
+
+use std::num::NonZeroU64;
+use std::ops::Range;
+use std::sync::Arc;
+
+use serde::de::{Deserializer, Error as _};
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::budget::BudgetTable;
+use super::entrant::Entrant;
+use super::field::{self, EntrantTable, Entry, WrittenEntrant};
+use super::instance::Instance;
+use super::kind::{Registry, Source};
+use super::stored::ProblemTable;
+use super::targets::TargetTable;
+use crate::input::{Document, InputError, count, keep, nearest};
+
+const DEFAULTS: &str = include_str!("defaults.toml");
+
+/// The keys of a file that are the same for all kinds of subjects.
+const KEYS: [&str; 6] = ["name", "seeds", "budget", "targets", "problem", "optimiser"];
+
+/// An experiment: every optimiser on every instance, for every seed.
+#[derive(Debug, Clone)]
+pub struct Experiment {
+    pub(super) name: String,
+    pub(super) seeds: NonZeroU64,
+    pub(super) budget: NonZeroU64,
+    pub(super) targets: Option<Spanned<TargetTable>>,
+    /// Where the instances of a file come from.
+    pub(super) source: Option<Arc<dyn Source>>,
+    /// Instances that a program has entered.
+    pub(super) instances: Vec<Instance>,
+    pub(super) field: Vec<Entry>,
+    /// Where the field stands.
+    pub(super) field_place: Range<usize>,
+    pub(super) document: Document,
+}
+
+/// What a file has beside the tables of its subjects.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct FileTable {
+    #[serde(deserialize_with = "folder_name")]
+    name: String,
+    #[serde(deserialize_with = "count::<1_000_000, _, _>")]
+    seeds: NonZeroU64,
+    budget: BudgetTable,
+    #[serde(default)]
+    targets: Option<Spanned<TargetTable>>,
+    #[serde(default)]
+    problem: Vec<ProblemTable>,
+    optimiser: Spanned<Vec<EntrantTable>>,
+}
+
+impl Experiment {
+    /// An experiment without instances and optimisers, of 15 seeds and 150,000 evaluations per run. The name, of
+    /// letters, digits, `-`, `_` and `.`, is that of its folder of results.
+    pub fn new(name: &str) -> Result<Self, InputError> {
+        let document = Document::embedded(&format!("the experiment {name:?}"), "");
+        checked_name(name).map_err(|message| document.error_at(0..0, message, None))?;
+        Ok(Self {
+            name: name.to_owned(),
+            seeds: NonZeroU64::MIN.saturating_add(14),
+            budget: NonZeroU64::MIN.saturating_add(149_999),
+            targets: None,
+            source: None,
+            instances: Vec::new(),
+            field: Vec::new(),
+            field_place: 0..0,
+            document,
+        })
+    }
+
+    /// Reads an experiment file. Its subjects are of the kind whose keys it has; without any, of the registry's first.
+    pub fn read(document: &Document, registry: &Registry) -> Result<Self, InputError> {
+        check_keys(document, registry)?;
+        let has_problems = document.key("problem")?.is_some();
+        let kind = registry.kind_of(document)?;
+        let has_keys = |keys: &[&str]| -> Result<bool, InputError> {
+            keys.iter().try_fold(false, |has, key| Ok(has || document.key(key)?.is_some()))
+        };
+        let kind = match kind {
+            Some(kind) if has_problems && !has_keys(kind.keys())? => None,
+            kind => kind,
+        };
+        let spaces = kind.map_or(&[][..], |kind| kind.spaces());
+        let file: FileTable = document.parse_reshaped(&[DEFAULTS], |table| {
+            keep(table, &KEYS);
+            field::spell_out(table, spaces, document)
+        })?;
+        let field_place = file.optimiser.span();
+        let entries = file.optimiser.into_inner().into_iter();
+        let entries: Vec<Entry> = entries.map(|t| t.entry(document)).collect::<Result<_, _>>()?;
+        if entries.is_empty() {
+            let message = "found no optimiser, expected at least one `[[optimiser]]`";
+            return Err(document.error_at(field_place, message, None));
+        }
+        let instances = file.problem.iter().map(|table| table.instance(document));
+        Ok(Self {
+            name: file.name,
+            seeds: file.seeds,
+            budget: file.budget.evaluations,
+            targets: file.targets,
+            source: kind.map(|kind| kind.read(document)).transpose()?,
+            instances: instances.collect::<Result<_, _>>()?,
+            field: entries,
+            field_place,
+            document: document.clone(),
+        })
+    }
+
+    /// The name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Number of seeds, for optimisers that have none of their own; they are 1, 2, … and the same for every
+    /// optimiser and instance.
+    pub fn seeds(&self) -> NonZeroU64 {
+        self.seeds
+    }
+
+    /// The same experiment with this number of seeds for every optimiser.
+    #[must_use]
+    pub fn with_seeds(mut self, seeds: NonZeroU64) -> Self {
+        self.seeds = seeds;
+        self.field.iter_mut().for_each(|entry| entry.entrant.seeds = None);
+        self
+    }
+
+    /// The same experiment with this budget for every run.
+    #[must_use]
+    pub fn with_budget(mut self, evaluations: NonZeroU64) -> Self {
+        self.budget = evaluations;
+        if let Some(source) = self.source.as_ref().and_then(|source| source.without_budgets()) {
+            self.source = Some(source);
+        }
+        self.instances.iter_mut().for_each(|instance| instance.budget = None);
+        self.field.iter_mut().for_each(|entry| entry.entrant.budget = None);
+        self
+    }
+
+    /// The same experiment with another instance.
+    #[must_use]
+    pub fn with_instance(mut self, instance: Instance) -> Self {
+        self.instances.push(instance);
+        self
+    }
+
+    /// The same experiment with another optimiser.
+    #[must_use]
+    pub fn with_optimiser(mut self, entrant: impl Into<Entrant>) -> Self {
+        self.field.push(entrant.into().into());
+        self
+    }
+
+    /// The same experiment with the targets that instances have, wherever they came from.
+    #[must_use]
+    pub(super) fn with_targets(self, instances: &[Instance]) -> Self {
+        Self { targets: Some(Spanned::new(0..0, TargetTable::of(instances))), ..self }
+    }
+
+    /// The same experiment as it stands in a folder of results, and the files that it needs there.
+    pub(super) fn kept(mut self) -> Result<(Self, Vec<(String, String)>), InputError> {
+        let kept = self.source.as_ref().map(|source| source.kept(&self.document)).transpose()?;
+        let Some((source, files)) = kept.flatten() else { return Ok((self, Vec::new())) };
+        self.source = Some(source);
+        Ok((self, files))
+    }
+
+    /// The experiment as a file that says it in full, with every default filled in.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        /// The file as one writes it.
+        #[derive(Serialize)]
+        struct Written<'a> {
+            name: &'a str,
+            seeds: NonZeroU64,
+            budget: BudgetTable,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            targets: &'a Option<Spanned<TargetTable>>,
+            #[serde(flatten)]
+            source: serde_json::Map<String, serde_json::Value>,
+            #[serde(skip_serializing_if = "Vec::is_empty")]
+            problem: Vec<ProblemTable>,
+            optimiser: Vec<WrittenEntrant<'a>>,
+        }
+        toml::to_string(&Written {
+            name: &self.name,
+            seeds: self.seeds,
+            budget: BudgetTable { evaluations: self.budget },
+            targets: &self.targets,
+            source: self.source.as_ref().map(|source| source.written()).unwrap_or_default(),
+            problem: self.instances.iter().map(ProblemTable::of).collect(),
+            optimiser: self.field.iter().map(|e| WrittenEntrant::of(&e.entrant)).collect(),
+        })
+    }
+
+    /// The experiment that runs when none is named.
+    pub fn embedded() -> Document {
+        Document::embedded("default.toml", include_str!("../../experiments/default.toml"))
+    }
+}
+
+/// Whether every key of a file is somebody's.
+fn check_keys(document: &Document, registry: &Registry) -> Result<(), InputError> {
+    let known: Vec<&str> = KEYS.into_iter().chain(registry.keys()).collect();
+    for (key, place) in document.keys()? {
+        if !known.contains(&key.as_str()) {
+            let expected = known.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>();
+            let message = format!("unknown field `{key}`, expected one of {}", expected.join(", "));
+            let help = nearest(&key, known.iter().copied());
+            let help = help.map(|near| format!("did you mean `{near}`?"));
+            return Err(document.error_at(place, message, help));
+        }
+    }
+    Ok(())
+}
+
+/// A name that is safe as a folder's on any system.
+fn folder_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    checked_name(&name).map_err(D::Error::custom)?;
+    Ok(name)
+}
+
+fn checked_name(name: &str) -> Result<(), String> {
+    let good = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if name.is_empty() || name.starts_with('.') || !name.chars().all(good) {
+        let expected = "letters, digits, `-`, `_` and `.`, since it names a folder";
+        return Err(format!("found name {name:?}, expected {expected}"));
+    }
+    Ok(())
+}

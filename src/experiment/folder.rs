@@ -1,0 +1,150 @@
+//! A folder of results: an experiment with its stored runs.
+
+use std::path::{Path, PathBuf};
+
+use super::file::Experiment;
+use super::kind::Registry;
+use super::plan::{Plan, RunSpec};
+use super::runner::{Progress, RunError, run};
+use super::shard::Shard;
+use super::store::{Store, StoreError};
+use crate::input::{Document, InputError};
+use crate::output::{FileError, check_writable, write_file};
+use crate::search::Watch;
+
+/// What the experiment is kept in.
+const EXPERIMENT: &str = "experiment.toml";
+
+/// A folder of results.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    /// The experiment spelt out.
+    pub plan: Plan,
+    /// Its stored runs.
+    pub store: Store,
+    /// Whether it held runs of another version of the experiment when it was opened.
+    pub was_another: bool,
+}
+
+/// How to do what is missing.
+#[derive(Debug, Clone, Copy, Default)]
+#[non_exhaustive]
+pub struct Options {
+    /// Runs at a time; as many as there are processors where none is given.
+    pub jobs: Option<usize>,
+    /// The part of the runs to do; all without one.
+    pub shard: Option<Shard>,
+}
+
+/// A folder that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    /// The experiment cannot be used.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The folder has no experiment.
+    #[error("found no {EXPERIMENT} in {}, expected the results of an experiment", .0.display())]
+    NoResults(PathBuf),
+    /// Results of several experiments in one folder would leave all but one without their definition.
+    #[error("{} holds the results of the experiment `{found}`, expected those of `{expected}`", .path.display())]
+    Another {
+        /// The folder.
+        path: PathBuf,
+        /// The experiment there.
+        found: String,
+        /// The experiment wanted.
+        expected: String,
+    },
+    /// The experiment could not be put into words.
+    #[error("cannot write the experiment: {0}")]
+    Written(String),
+    /// A file could not be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A stored result could not be read or written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+impl Folder {
+    /// Keeps a plan's experiment in a folder, made if need be, for its runs to be stored beside it. The folder
+    /// may hold runs of the experiment already; those of another version of it stay there.
+    pub fn create(path: &Path, plan: Plan, registry: &Registry) -> Result<Self, FolderError> {
+        check_name(path, &plan.name, registry)?;
+        let store = Store::open(path)?;
+        let (experiment, files) = plan.experiment.clone().kept()?;
+        for (name, text) in files {
+            keep(&path.join(name), &text)?;
+        }
+        let text = experiment.to_toml().map_err(|e| FolderError::Written(e.to_string()))?;
+        let was_another = keep(&path.join(EXPERIMENT), &text)?;
+        Ok(Self { path: path.to_owned(), plan, store, was_another })
+    }
+
+    /// Opens a folder of results to read them; nothing is written. Subjects and optimisers that this program does not
+    /// have can be reported and not be run.
+    pub fn open(path: &Path, registry: &Registry) -> Result<Self, FolderError> {
+        let file = path.join(EXPERIMENT);
+        if !file.is_file() {
+            return Err(FolderError::NoResults(path.to_owned()));
+        }
+        let plan = Experiment::read(&Document::read(&file)?, registry)?.plan()?;
+        let store = Store::existing(path);
+        Ok(Self { path: path.to_owned(), plan, store, was_another: false })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The experiment's file.
+    pub fn experiment_file(&self) -> PathBuf {
+        self.path.join(EXPERIMENT)
+    }
+
+    /// The runs of a shard, or all.
+    pub fn runs(&self, shard: Option<Shard>) -> Vec<&RunSpec> {
+        let mine = |place: usize| shard.is_none_or(|shard| shard.holds(place));
+        let places = self.plan.runs.iter().enumerate();
+        places.filter(|(place, _)| mine(*place)).map(|(_, run)| run).collect()
+    }
+
+    /// Does what is missing; what is stored is not done again. Where `watch` is interrupted, runs that have not
+    /// ended leave nothing behind.
+    pub fn run(
+        &self,
+        options: Options,
+        watch: &Watch,
+        progress: &dyn Progress,
+    ) -> Result<(), RunError> {
+        let all = || std::thread::available_parallelism().map_or(1, usize::from);
+        let jobs = options.jobs.unwrap_or_else(all).max(1);
+        run(&self.plan, &self.runs(options.shard), &self.store, jobs, watch, progress)
+    }
+}
+
+fn check_name(path: &Path, name: &str, registry: &Registry) -> Result<(), FolderError> {
+    let Ok(document) = Document::read(&path.join(EXPERIMENT)) else { return Ok(()) };
+    match Experiment::read(&document, registry) {
+        Ok(before) if before.name() != name => Err(FolderError::Another {
+            path: path.to_owned(),
+            found: before.name().to_owned(),
+            expected: name.to_owned(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a text, unless it is there already: then other shards may be reading it. Whether another
+/// text gave way to it.
+fn keep(path: &Path, text: &str) -> Result<bool, FolderError> {
+    let before = std::fs::read_to_string(path).ok();
+    if before.as_deref() == Some(text) {
+        check_writable(path)?;
+    } else {
+        write_file(path, text.as_bytes())?;
+    }
+    Ok(before.is_some_and(|before| before != text))
+}

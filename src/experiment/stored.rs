@@ -1,0 +1,167 @@
+//! Subjects of another program, as far as a file of results tells of them.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::instance::Instance;
+use super::plan::Plan;
+use super::run::Run;
+use super::subject::{Quantity, Subject, Unavailable, Value};
+use crate::exhibit::{Exhibits, Finding};
+use crate::input::{Document, Finite, InputError};
+use crate::search::Problem;
+
+/// A `[[problem]]` table: an instance that a program has entered, with all that its results need to be read.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub(super) struct ProblemTable {
+    kind: String,
+    name: String,
+    #[serde(default)]
+    label: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    group: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    title: Option<String>,
+    dimension: usize,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    least_cost: Option<Finite>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    known_cost: Option<Finite>,
+    /// May be infinite or NaN.
+    start_cost: f64,
+    #[serde(default = "letter")]
+    symbol: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    spaces: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    targets: Vec<Finite>,
+    /// JSON.
+    identity: toml::Spanned<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    facts: Vec<FactTable>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    measures: Vec<Quantity>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FactTable {
+    quantity: Quantity,
+    value: Value,
+}
+
+fn letter() -> String {
+    "f".to_owned()
+}
+
+impl ProblemTable {
+    /// What of an instance its results need to be read.
+    pub(super) fn of(instance: &Instance) -> Self {
+        let Instance { label, group, title, subject, targets, .. } = instance;
+        let finite = |values: &[f64]| values.iter().copied().map(Finite).collect();
+        let facts = subject.facts().into_iter().filter(|(_, value)| *value != Value::None);
+        Self {
+            kind: subject.kind().to_owned(),
+            name: subject.name().to_owned(),
+            label: label.clone(),
+            group: (group != label).then(|| group.clone()),
+            title: (title != group).then(|| title.clone()),
+            dimension: subject.dimension(),
+            least_cost: subject.least_cost().filter(|cost| cost.is_finite()).map(Finite),
+            known_cost: subject.known_cost().filter(|cost| cost.is_finite()).map(Finite),
+            start_cost: instance.start_cost(),
+            symbol: subject.cost_symbol().to_owned(),
+            spaces: subject.spaces(),
+            targets: finite(targets),
+            identity: toml::Spanned::new(0..0, subject.identity().to_string()),
+            facts: facts.map(|(quantity, value)| FactTable { quantity, value }).collect(),
+            measures: subject.measures(),
+        }
+    }
+
+    /// The instance, which can be reported and not be run.
+    pub(super) fn instance(&self, document: &Document) -> Result<Instance, InputError> {
+        let identity = serde_json::from_str(self.identity.get_ref()).map_err(|error| {
+            let message = format!("found no JSON, expected the problem's identity: {error}");
+            document.error_at(self.identity.span(), message, None)
+        })?;
+        let group = self.group.clone().unwrap_or_else(|| self.label.clone());
+        let title = self.title.clone().unwrap_or_else(|| group.clone());
+        let targets: Vec<f64> = self.targets.iter().map(|target| target.0).collect();
+        let subject = Arc::new(Stored { identity, table: self.clone() });
+        Ok(Instance { group, title, targets, ..Instance::new(&*self.label, subject) })
+    }
+}
+
+/// A subject that this program can only tell of.
+#[derive(Debug)]
+struct Stored {
+    table: ProblemTable,
+    identity: serde_json::Value,
+}
+
+impl Subject for Stored {
+    fn kind(&self) -> &str {
+        &self.table.kind
+    }
+
+    fn name(&self) -> &str {
+        &self.table.name
+    }
+
+    fn identity(&self) -> serde_json::Value {
+        self.identity.clone()
+    }
+
+    fn spaces(&self) -> Vec<String> {
+        self.table.spaces.clone()
+    }
+
+    fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Unavailable> {
+        Err(Unavailable::new(format!(
+            "the problem `{}` is of the program that made these results",
+            self.table.name
+        )))
+    }
+
+    fn dimension(&self) -> usize {
+        self.table.dimension
+    }
+
+    fn least_cost(&self) -> Option<f64> {
+        self.table.least_cost.map(|cost| cost.0)
+    }
+
+    fn known_cost(&self) -> Option<f64> {
+        self.table.known_cost.map(|cost| cost.0)
+    }
+
+    fn start_cost(&self) -> f64 {
+        self.table.start_cost
+    }
+
+    fn facts(&self) -> Vec<(Quantity, Value)> {
+        let facts = self.table.facts.iter();
+        facts.map(|fact| (fact.quantity.clone(), fact.value.clone())).collect()
+    }
+
+    fn measures(&self) -> Vec<Quantity> {
+        self.table.measures.clone()
+    }
+
+    fn cost_symbol(&self) -> &str {
+        &self.table.symbol
+    }
+
+    fn exhibits(&self, _: &Plan, _: &[Run]) -> Exhibits {
+        let left_out = format!(
+            "What subjects of the kind `{}` show of their own, if anything, is left out: this program does not know the \
+             kind.",
+            self.table.kind
+        );
+        let finding = Finding::new("Is anything left out?", left_out.clone());
+        Exhibits { findings: vec![finding], lines: vec![left_out], ..Exhibits::default() }
+    }
+}

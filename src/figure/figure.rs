@@ -1,0 +1,190 @@
+//! A figure: a legend above panels, and the files it is written to.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use resvg::{tiny_skia, usvg};
+use svg2pdf::{ConversionOptions, PageOptions};
+
+use super::error::FigureError;
+use super::panel::{Frame, LINE, Panel};
+use super::sheet::{Anchor, Sheet, fitted, text_width};
+use super::style::{Stroke, TEXT_PT, Width};
+use crate::output::{create_folder, write_file};
+
+/// Panels in rows, under one legend.
+#[derive(Debug, Clone)]
+pub struct Figure {
+    pub(crate) width: Width,
+    /// Panels in a row.
+    pub(crate) across: usize,
+    /// Height of what is between a panel's axes \[mm\].
+    pub(crate) height: f64,
+    pub(crate) panels: Vec<Panel>,
+}
+
+/// Resolution of PNG files \[dots per inch\].
+const PNG_DPI: f32 = 300.0;
+/// Resolution that SVG's absolute lengths stand for \[dots per inch\].
+const SVG_DPI: f32 = 96.0;
+/// Length of a line in the legend, room behind it, and room behind its text \[mm\].
+const SAMPLE: f64 = 6.4;
+const BEHIND_SAMPLE: f64 = 0.7;
+const BEHIND_NAME: f64 = 2.4;
+
+impl Figure {
+    /// Panels one below the other, a column wide.
+    pub(crate) fn column(panels: Vec<Panel>, height: f64) -> Self {
+        Self { width: Width::Column, across: 1, height, panels }
+    }
+
+    /// One panel a column wide; more in rows over the page's width.
+    pub(crate) fn grid(panels: Vec<Panel>) -> Self {
+        match panels.len() {
+            0 | 1 => Self::column(panels, 44.0),
+            2 => Self { width: Width::Page, across: 2, height: 44.0, panels },
+            3 | 5 | 6 | 9 => Self { width: Width::Page, across: 3, height: 36.0, panels },
+            _ => Self { width: Width::Page, across: 4, height: 28.0, panels },
+        }
+    }
+
+    /// Writes `NAME.svg`, `NAME.png` and `NAME.pdf` into a folder, made if need be.
+    pub fn save(&self, folder: &Path, name: &str) -> Result<(), FigureError> {
+        create_folder(folder)?;
+        let tree = self.tree()?;
+        write_file(&folder.join(format!("{name}.svg")), svg(&tree).as_bytes())?;
+        write_file(&folder.join(format!("{name}.png")), &png(&tree, PNG_DPI)?)?;
+        write_file(&folder.join(format!("{name}.pdf")), &pdf(&tree)?)?;
+        Ok(())
+    }
+
+    /// The figure as SVG.
+    pub fn svg(&self) -> Result<String, FigureError> {
+        Ok(svg(&self.tree()?))
+    }
+
+    pub(crate) fn tree(&self) -> Result<usvg::Tree, FigureError> {
+        let legend = self.legend();
+        let top = LINE * legend.len() as f64 + if legend.is_empty() { 0.0 } else { 0.8 };
+        let (frames, height) = self.frames(top);
+        Sheet::drawn(self.width.mm(), height, |sheet| {
+            draw_legend(sheet, &legend)?;
+            let mut panels = self.panels.iter().zip(&frames);
+            panels.try_for_each(|(panel, frame)| panel.draw(sheet, frame))
+        })
+    }
+
+    /// Where the panels are, below `top`, and the height of all \[mm\].
+    fn frames(&self, top: f64) -> (Vec<Frame>, f64) {
+        let (panels, across) = (&self.panels, self.across.max(1));
+        let one =
+            |label: fn(&Panel) -> &str| panels.windows(2).all(|w| label(&w[0]) == label(&w[1]));
+        let (one_x, one_y) = (one(|p| &p.x.label), one(|p| &p.y.label));
+        // Without a panel below, or with one whose axis is another, it shows its own label.
+        let x_label = |i: usize| !one_x || i + across >= panels.len();
+        let y_label = |i: usize| !one_y || i.is_multiple_of(across);
+        let mut lefts = vec![0.0; across];
+        for (i, panel) in panels.iter().enumerate() {
+            lefts[i % across] = f64::max(lefts[i % across], panel.left(self.height, y_label(i)));
+        }
+        let beside = panels.iter().map(Panel::beside).fold(0.0, f64::max);
+        let free = self.width.mm() - lefts.iter().sum::<f64>() - beside * across as f64;
+        let width = (free / across as f64).max(1.0);
+        let mut frames = Vec::new();
+        let mut y = top;
+        for (r, row) in panels.chunks(across).enumerate() {
+            let above = row.iter().map(Panel::above).fold(0.0, f64::max);
+            let mut x = 0.0;
+            let mut below = 0.0;
+            for (c, panel) in row.iter().enumerate() {
+                let i = r * across + c;
+                let left = x + lefts[c];
+                let (top, bottom) = (y + above, y + above + self.height);
+                let (x_label, y_label) = (x_label(i), y_label(i));
+                frames.push(Frame { left, top, right: left + width, bottom, x_label, y_label });
+                below = f64::max(below, panel.below(x_label));
+                x = left + width + beside;
+            }
+            y += above + self.height + below;
+        }
+        (frames, y)
+    }
+
+    /// What the marks of all panels are called, each name once, in rows that fit the width, each with its
+    /// place \[mm\].
+    fn legend(&self) -> Vec<Vec<(f64, String, Stroke)>> {
+        let width = self.width.mm();
+        let mut rows: Vec<Vec<(f64, String, Stroke)>> = Vec::new();
+        let mut x = f64::INFINITY;
+        let mut named = HashSet::new();
+        let marks = self.panels.iter().flat_map(|panel| &panel.marks);
+        for (name, stroke) in marks.filter_map(|m| m.legend()).filter(|(n, _)| named.insert(*n)) {
+            let name = fitted(name, width - SAMPLE - BEHIND_SAMPLE - 2.0);
+            let needed = SAMPLE + BEHIND_SAMPLE + text_width(&name, TEXT_PT);
+            if x + needed > width {
+                rows.push(Vec::new());
+                x = 1.0;
+            }
+            if let Some(row) = rows.last_mut() {
+                row.push((x, name, *stroke));
+            }
+            x += needed + BEHIND_NAME;
+        }
+        rows
+    }
+}
+
+fn draw_legend(sheet: &Sheet<'_>, rows: &[Vec<(f64, String, Stroke)>]) -> Result<(), FigureError> {
+    for (i, row) in rows.iter().enumerate() {
+        let y = LINE * (i as f64 + 0.6);
+        for (x, name, stroke) in row {
+            if stroke.width > 0.0 {
+                sheet.line(&[[*x, y], [x + SAMPLE, y]], stroke)?;
+            }
+            sheet.marker([x + 0.5 * SAMPLE, y], stroke)?;
+            sheet.text(name, [x + SAMPLE + BEHIND_SAMPLE, y], Anchor::Left)?;
+        }
+    }
+    Ok(())
+}
+
+/// Text becomes outlines, so the SVG looks the same wherever it is opened.
+fn svg(tree: &usvg::Tree) -> String {
+    tree.to_string(&usvg::WriteOptions {
+        coordinates_precision: 1,
+        transforms_precision: 5,
+        ..usvg::WriteOptions::default()
+    })
+}
+
+pub(crate) fn png(tree: &usvg::Tree, dpi: f32) -> Result<Vec<u8>, FigureError> {
+    let error = |reason: String| FigureError::Convert { format: "PNG", reason };
+    let scale = dpi / SVG_DPI;
+    let length = |length: f32| (length * scale).ceil() as u32;
+    let (width, height) = (length(tree.size().width()), length(tree.size().height()));
+    let mut pixels = tiny_skia::Pixmap::new(width, height)
+        .ok_or_else(|| error("the figure is too large".to_owned()))?;
+    // The last pixels are only in part within the drawing.
+    pixels.fill(tiny_skia::Color::WHITE);
+    resvg::render(tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+    let per_metre = (dpi / 0.0254).round() as u32;
+    let unit = png::Unit::Meter;
+    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit }));
+    // The paper is opaque, so there is nothing to see through.
+    let colours: Vec<u8> =
+        pixels.data().chunks_exact(4).flat_map(|rgba| &rgba[..3]).copied().collect();
+    encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(&colours))
+        .map_err(|e| error(e.to_string()))?;
+    Ok(bytes)
+}
+
+fn pdf(tree: &usvg::Tree) -> Result<Vec<u8>, FigureError> {
+    svg2pdf::to_pdf(tree, ConversionOptions::default(), PageOptions { dpi: SVG_DPI })
+        .map_err(|e| FigureError::Convert { format: "PDF", reason: e.to_string() })
+}

@@ -1,0 +1,37 @@
+//! A motion, sampled.
+
+use polars::prelude::*;
+
+use crate::exhibit::Table;
+use crate::reorientation::motion::Motion;
+
+/// One row a time and joint: time \[s\], joint, angle \[rad\] and its derivatives \[rad, s\], and the base's attitude as a
+/// quaternion that turns base axes into inertial axes.
+pub(in crate::reorientation) fn motion_table(motion: &Motion) -> PolarsResult<Table> {
+    let places = || {
+        let joints = motion.joints.len();
+        (0..motion.time.len()).flat_map(move |i| (0..joints).map(move |j| (i, j)))
+    };
+    let derivative = |k: usize| -> Vec<f64> {
+        places().map(|(i, j)| motion.joints[j].derivatives[i][k]).collect()
+    };
+    let base = |k: usize| -> Vec<f64> {
+        // nalgebra keeps x, y, z, w.
+        places().map(|(i, _)| motion.base[i].coords[k]).collect()
+    };
+    let frame = df!(
+        "time" => places().map(|(i, _)| motion.time[i]).collect::<Vec<_>>(),
+        "joint" => places().map(|(_, j)| motion.joints[j].name.as_str()).collect::<Vec<_>>(),
+        "angle" => derivative(0),
+        "rate" => derivative(1),
+        "acceleration" => derivative(2),
+        "jerk" => derivative(3),
+        "base_w" => base(3),
+        "base_x" => base(0),
+        "base_y" => base(1),
+        "base_z" => base(2),
+    )?;
+    let caption = "The best motion: joint angles and derivatives in seconds and radians, and the quaternion that turns base \
+        axes into inertial axes.";
+    Ok(Table::curve("motion", caption, frame))
+}

@@ -1,0 +1,232 @@
+//! What the weight of the base trades.
+
+use polars::prelude::df;
+
+use super::best::BestMotion;
+use super::sweep_finding::weight_varies;
+use super::sweeps::{MOST_CURVES, duration, others};
+use crate::exhibit::Table;
+use crate::figure::Figure;
+use crate::figure::axis::Axis;
+use crate::figure::marks::{Line, Mark};
+use crate::figure::panel::{Panel, range};
+use crate::figure::sheet::Anchor;
+use crate::figure::style::{Marker, Stroke};
+use crate::reorientation::symbols::K_B;
+
+/// How far the text beside a point stands above it \[mm\].
+const ABOVE_FRONT: f64 = 1.9;
+/// Shares of the axes within which points are one.
+const TOGETHER: f64 = 0.02;
+/// Share of the axis that a line of text needs.
+const LINE: f64 = 0.09;
+/// Most weights that are named one by one.
+const MOST_NAMED: usize = 3;
+
+/// The best motions of one task with any weight.
+#[derive(Default)]
+struct Front {
+    name: String,
+    /// Duration \[s\], residual \[°\] and weight.
+    efficient: Vec<[f64; 3]>,
+    beaten: Vec<[f64; 3]>,
+}
+
+impl Front {
+    fn all(&self) -> impl Iterator<Item = &[f64; 3]> {
+        self.efficient.iter().chain(&self.beaten)
+    }
+
+    /// The staircase of what is not beaten, and the points.
+    fn marks(&self, stroke: Stroke, names: [&str; 2]) -> Vec<Mark> {
+        let places =
+            |motions: &[[f64; 3]]| motions.iter().map(|m| [m[0], m[1]]).collect::<Vec<_>>();
+        let points = |name: &str, hollow: bool, motions: &[[f64; 3]]| Mark::Points {
+            name: name.to_owned(),
+            stroke: Stroke { hollow, width: 0.0, ..stroke },
+            points: places(motions),
+        };
+        let front = places(&self.efficient);
+        let corner = |w: &[[f64; 2]]| [w[0], [w[1][0], w[0][1]], w[1]];
+        let stairs = front.windows(2).flat_map(corner).collect();
+        let reference = Stroke { colour: stroke.colour, ..Stroke::reference() };
+        let mut marks = vec![Mark::Line(Line::new("", reference, stairs))];
+        if !self.beaten.is_empty() {
+            marks.push(points(names[1], true, &self.beaten));
+        }
+        marks.push(points(names[0], false, &self.efficient));
+        marks
+    }
+}
+
+/// The best motion of one weight.
+#[derive(Debug, Clone)]
+pub(super) struct Trade {
+    /// All other settings, as charts write them.
+    pub(super) others: String,
+    pub(super) weight: f64,
+    /// Duration \[s\].
+    pub(super) duration: f64,
+    /// Error of the base \[°\].
+    pub(super) residual_deg: f64,
+    /// Whether no other weight's motion is better in one and no worse in the other.
+    pub(super) is_efficient: bool,
+}
+
+/// Residuals that differ by less are the same, in degrees: searches end with some 10⁻⁶.
+const SAME_DEG: f64 = 1e-5;
+/// Durations that differ by a smaller share are the same.
+const SAME_DURATION: f64 = 1e-6;
+
+/// The best motions as what their weights trade; none unless the weight varies.
+pub(super) fn trades(best: &[BestMotion<'_>]) -> Vec<Trade> {
+    if !weight_varies(best) {
+        return Vec::new();
+    }
+    let trade = |motion: &BestMotion<'_>| Trade {
+        others: others(motion.instance, "weight_base"),
+        weight: motion.problem.task().base_weight,
+        duration: motion.duration,
+        residual_deg: motion.residual_deg,
+        is_efficient: !best.iter().any(|o| same_but_for_weight(o, motion) && dominates(o, motion)),
+    };
+    best.iter().map(trade).collect()
+}
+
+/// An experiment has one robot, so there is no need to compare robots.
+fn same_but_for_weight(a: &BestMotion<'_>, b: &BestMotion<'_>) -> bool {
+    let (own, other) = (a.problem.task(), b.problem.task());
+    own.base_weight != other.base_weight
+        && own.start == other.start
+        && own.goal == other.goal
+        && own.limits == other.limits
+        && a.problem.family().terms() == b.problem.family().terms()
+}
+
+fn dominates(a: &BestMotion<'_>, b: &BestMotion<'_>) -> bool {
+    let no_worse = a.residual_deg <= b.residual_deg + SAME_DEG
+        && a.duration <= b.duration * (1.0 + SAME_DURATION);
+    let better = a.residual_deg < b.residual_deg - SAME_DEG
+        || a.duration < b.duration * (1.0 - SAME_DURATION);
+    no_worse && better
+}
+
+/// The table of the trades; none where there are none.
+pub(super) fn table(best: &[BestMotion<'_>]) -> Option<Table> {
+    let trades = trades(best);
+    let frame = df!(
+        "instance" => best.iter().map(|motion| motion.instance.label.as_str()).collect::<Vec<_>>(),
+        "weight_base" => best.iter().map(|m| m.problem.task().base_weight).collect::<Vec<_>>(),
+        "residual [°]" => best.iter().map(|motion| motion.residual_deg).collect::<Vec<_>>(),
+        "t_f [s]" => best.iter().map(|motion| motion.duration).collect::<Vec<_>>(),
+        "efficient" => best
+            .iter()
+            .zip(&trades)
+            .map(|(_, trade)| trade.is_efficient)
+            .collect::<Vec<_>>(),
+    );
+    let caption = "Residual against duration of the best motions; efficient are those that no other weight's beats in \
+        one without being worse in the other.";
+    Some(Table::of("pareto", caption, frame.ok().filter(|_| !trades.is_empty())?))
+}
+
+/// The fronts of the trades, each in the order of its durations.
+fn fronts(trades: &[Trade]) -> Vec<Front> {
+    let mut fronts: Vec<Front> = Vec::new();
+    for trade in trades {
+        let place = fronts.iter().position(|front| front.name == trade.others);
+        let place = place.unwrap_or_else(|| {
+            fronts.push(Front { name: trade.others.clone(), ..Front::default() });
+            fronts.len() - 1
+        });
+        let front = &mut fronts[place];
+        let motions = if trade.is_efficient { &mut front.efficient } else { &mut front.beaten };
+        motions.push([trade.duration, trade.residual_deg, trade.weight]);
+    }
+    for front in &mut fronts {
+        front.efficient.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    }
+    fronts
+}
+
+/// Residual against duration of the best motions of all weights, a front for each task but for its weight; filled points
+/// are efficient. Of a single front weights stand beside points where there is room. None where
+/// there are no trades or too many fronts.
+pub(super) fn pareto(trades: &[Trade]) -> Option<Figure> {
+    let fronts = fronts(trades);
+    if fronts.is_empty() || fronts.len() > MOST_CURVES {
+        return None;
+    }
+    let values = |k: usize| range(fronts.iter().flat_map(Front::all).map(|motion| motion[k]), 0.0);
+    let x = Axis::linear(&duration(), values(0), 0.12);
+    let y = Axis::linear("residual [°]", values(1), 0.08);
+    let mut marks = Vec::new();
+    for (i, front) in fronts.iter().enumerate() {
+        let stroke = Stroke::of(i).with_marker(Marker::ALL[i % Marker::ALL.len()]);
+        let names = match fronts.len() {
+            1 => ["efficient", "beaten by another weight"],
+            _ => [front.name.as_str(), ""],
+        };
+        marks.extend(front.marks(stroke, names));
+    }
+    if let [front] = &fronts[..] {
+        let all: Vec<[f64; 3]> = front.all().copied().collect();
+        marks.extend(labels(&all, &x, &y));
+    }
+    Some(Figure::column(vec![Panel::new(x, y, marks)], 44.0))
+}
+
+/// The weights beside points that lie on each other, where no other point is in the way.
+fn labels(motions: &[[f64; 3]], x: &Axis, y: &Axis) -> Vec<Mark> {
+    let places: Vec<[f64; 2]> = motions.iter().map(|m| [x.place(m[0]), y.place(m[1])]).collect();
+    let mut weights: Vec<f64> = motions.iter().map(|motion| motion[2]).collect();
+    weights.sort_by(f64::total_cmp);
+    let mut marks = Vec::new();
+    for (first, own) in clusters(&places, motions) {
+        let [at_x, at_y] = places[first];
+        let is_right = at_x > 0.6;
+        let is_free = |other: &[f64; 2]| {
+            let (along, up) = (other[0] - at_x, (other[1] - at_y).abs());
+            let away = if is_right { -along } else { along };
+            up > LINE || away < -TOGETHER || away.abs() < TOGETHER
+        };
+        if places.iter().all(is_free) {
+            let anchor = if is_right { Anchor::Right } else { Anchor::Left };
+            let at = [motions[first][0], motions[first][1]];
+            marks.push(Mark::Label { at, text: told(&own, &weights), anchor, raised: ABOVE_FRONT });
+        }
+    }
+    marks
+}
+
+/// Points that lie on each other: the first one's index, and the weights of all in order.
+fn clusters(places: &[[f64; 2]], motions: &[[f64; 3]]) -> Vec<(usize, Vec<f64>)> {
+    let mut clusters: Vec<(usize, Vec<f64>)> = Vec::new();
+    for (i, [x, y]) in places.iter().enumerate() {
+        let near = |first: usize| {
+            (places[first][0] - x).abs() < TOGETHER && (places[first][1] - y).abs() < TOGETHER
+        };
+        match clusters.iter_mut().find(|(first, _)| near(*first)) {
+            Some((_, own)) => own.push(motions[i][2]),
+            None => clusters.push((i, vec![motions[i][2]])),
+        }
+    }
+    for (_, own) in &mut clusters {
+        own.sort_by(f64::total_cmp);
+    }
+    clusters
+}
+
+/// Some of all weights: one by one, as a range where they are all that lie in it, or how many they are.
+fn told(own: &[f64], all: &[f64]) -> String {
+    let [low, high] = [own[0], own[own.len() - 1]];
+    let between = all.iter().filter(|weight| (low..=high).contains(*weight)).count();
+    if own.len() > 2 && between == own.len() {
+        return format!("{K_B} = {low} to {high}");
+    }
+    if own.len() > MOST_NAMED {
+        return format!("{} weights", own.len());
+    }
+    let own: Vec<String> = own.iter().map(ToString::to_string).collect();
+    format!("{K_B} = {}", own.join(", "))
+}

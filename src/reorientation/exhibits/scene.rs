@@ -1,0 +1,96 @@
+//! A motion as the page shows it: where everything is while the robot floats.
+
+use nalgebra::UnitQuaternion;
+use serde::Serialize;
+
+use super::best::BestMotion;
+use crate::exhibit::Scene;
+use crate::posture::{Posture, Satellite};
+use crate::reorientation::fitness::Reorientation;
+use crate::reorientation::motion::Motion;
+use crate::robot::{Joint, Robot};
+
+/// Most instances whose best motion is shown.
+const MOST_SCENES: usize = 24;
+
+/// Intervals between the frames of a motion.
+const INTERVALS: usize = 120;
+
+/// The best motion of an instance.
+#[derive(Debug, Clone, Serialize)]
+struct MotionScene<'a> {
+    /// The instance's label; empty where there is but one.
+    label: &'a str,
+    /// Who found it.
+    optimiser: &'a str,
+    /// With which seed.
+    seed: u64,
+    /// Its certified cost.
+    cost: f64,
+    /// How long it takes \[s\].
+    duration: f64,
+    /// What the base looks like.
+    satellite: Satellite,
+    /// The joints, from the base outward.
+    joints: Vec<JointScene>,
+    /// Equally spaced in time, from start to end.
+    frames: Vec<Posture>,
+    /// The goal.
+    goal: Posture,
+}
+
+/// A joint over time, in degrees.
+#[derive(Debug, Clone, Serialize)]
+struct JointScene {
+    /// Its name.
+    name: String,
+    /// Smallest and largest angle \[°\].
+    range: [f64; 2],
+    /// Limits on rate \[°/s\], acceleration \[°/s²\] and jerk \[°/s³\].
+    limits: [f64; 3],
+    /// Angle \[°\], rate \[°/s\], acceleration \[°/s²\] and jerk \[°/s³\] in every frame.
+    states: Vec<[f64; 4]>,
+}
+
+impl<'a> MotionScene<'a> {
+    fn of(best: &'a BestMotion<'_>) -> Self {
+        let (run, task) = (best.run, best.problem.task());
+        let motion = best.sample(INTERVALS);
+        Self {
+            label: &best.instance.label,
+            optimiser: best.optimiser,
+            seed: run.seed,
+            cost: run.cost,
+            duration: best.duration,
+            satellite: Satellite::of(&task.robot),
+            frames: frames(&task.robot, &motion),
+            joints: joints(best.problem, &motion),
+            goal: Posture::of(&task.robot, &task.goal.joints, task.goal.base),
+        }
+    }
+}
+
+/// The first of the best motions.
+pub(super) fn scenes(best: &[BestMotion<'_>]) -> Vec<Scene> {
+    let first = best.iter().take(MOST_SCENES);
+    first.filter_map(|motion| Scene::new(&MotionScene::of(motion))).collect()
+}
+
+fn frames(robot: &Robot, motion: &Motion) -> Vec<Posture> {
+    let frame = |(i, attitude): (usize, &UnitQuaternion<f64>)| {
+        let angles: Vec<f64> = motion.joints.iter().map(|j| j.derivatives[i][0]).collect();
+        Posture::of(robot, &angles, *attitude)
+    };
+    motion.base.iter().enumerate().map(frame).collect()
+}
+
+fn joints(problem: &Reorientation, motion: &Motion) -> Vec<JointScene> {
+    let task = problem.task();
+    let joint = |(i, joint): (usize, &Joint)| JointScene {
+        name: joint.name.clone(),
+        range: joint.range.map(f64::to_degrees),
+        limits: task.limits.0[i].map(f64::to_degrees),
+        states: motion.joints[i].derivatives.iter().map(|s| s.map(f64::to_degrees)).collect(),
+    };
+    task.robot.joints.iter().enumerate().map(joint).collect()
+}

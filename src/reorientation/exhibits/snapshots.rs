@@ -1,0 +1,171 @@
+//! The robot along a motion.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::figure::Figure;
+use crate::figure::axis::Axis;
+use crate::figure::marks::{Line, Mark, Marked};
+use crate::figure::panel::Panel;
+use crate::figure::style::{COLOURS, DASHES, GRID, INK, Marker, PAPER, Stroke, Width, mix};
+use crate::posture::{Posture, Satellite};
+use crate::reorientation::motion::Motion;
+use crate::task::Task;
+
+/// Snapshots of a motion, and those in a row.
+const SNAPSHOTS: usize = 6;
+const ACROSS: usize = 3;
+/// Where it is seen from, in inertial axes.
+const FROM: [f64; 3] = [1.0, -1.6, 0.9];
+/// Free share around what is seen.
+const AROUND: f64 = 1.06;
+
+/// A parallel projection.
+struct View {
+    right: Vector3<f64>,
+    up: Vector3<f64>,
+    towards: Vector3<f64>,
+}
+
+impl View {
+    fn new() -> Self {
+        let towards = Vector3::from(FROM).normalize();
+        let right = Vector3::z().cross(&towards).normalize();
+        Self { up: towards.cross(&right), right, towards }
+    }
+
+    fn of(&self, place: &Vector3<f64>) -> [f64; 2] {
+        [self.right.dot(place), self.up.dot(place)]
+    }
+}
+
+/// The robot at one time, inertial axes.
+struct Snapshot {
+    time: f64,
+    attitude: UnitQuaternion<f64>,
+    base: Vector3<f64>,
+    /// Joints and tool.
+    arm: Vec<Vector3<f64>>,
+}
+
+impl Snapshot {
+    fn of(task: &Task, motion: &Motion, i: usize) -> Self {
+        let angles: Vec<f64> = motion.joints.iter().map(|j| j.derivatives[i][0]).collect();
+        let attitude = motion.base[i];
+        let posture = Posture::of(&task.robot, &angles, attitude);
+        let base = Vector3::from(posture.position);
+        let arm = posture.origins.iter().map(|o| base + attitude * Vector3::from(*o)).collect();
+        Self { time: motion.time[i], attitude, base, arm }
+    }
+}
+
+/// Four corners of one of a box's six faces: the axis it is across, on which side.
+fn face(half: [f64; 3], axis: usize, side: f64) -> [Vector3<f64>; 4] {
+    let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[u, v]| {
+        let mut corner = Vector3::zeros();
+        (corner[axis], corner[a], corner[b]) = (side * half[axis], u * half[a], v * half[b]);
+        corner
+    })
+}
+
+/// The robot at equal distances of time, seen along one direction. The base's goal attitude is dotted, the tool's way is
+/// drawn up to each time.
+pub(super) fn snapshots(motion: &Motion, task: &Task) -> Figure {
+    let view = View::new();
+    let satellite = Satellite::of(&task.robot);
+    let last = motion.time.len().saturating_sub(1);
+    let all: Vec<Snapshot> = (0..=last).map(|i| Snapshot::of(task, motion, i)).collect();
+    let chosen: Vec<usize> = (0..SNAPSHOTS).map(|k| k * last / (SNAPSHOTS - 1)).collect();
+    let drawings: Vec<Vec<Mark>> =
+        chosen.iter().map(|&i| drawing(&view, &satellite, task, &all[..=i])).collect();
+    let (middle, [half_x, half_y]) = seen(&drawings);
+    let width = (Width::Column.mm() - ACROSS as f64) / ACROSS as f64;
+    let height = width * (half_y / half_x).clamp(0.6, 1.5);
+    // The same scale in both directions and in all panels.
+    let scale = f64::max(half_x / width, half_y / height) * AROUND;
+    let axis = |middle: f64, length: f64| {
+        Axis::linear("", [middle - scale * length, middle + scale * length], 0.0)
+    };
+    let panels = chosen.iter().zip(drawings).map(|(&i, marks)| {
+        let time = format!("t = {:.2} s", all[i].time);
+        Panel::bare(axis(middle[0], width), axis(middle[1], height), marks).titled(&time)
+    });
+    Figure { width: Width::Column, across: ACROSS, height, panels: panels.collect() }
+}
+
+/// The middle and half the size of all that is drawn.
+fn seen(drawings: &[Vec<Mark>]) -> ([f64; 2], [f64; 2]) {
+    let places = drawings.iter().flatten().flat_map(|mark| match mark {
+        Mark::Area { corners, .. } => &corners[..],
+        Mark::Line(line) => &line.points[..],
+        _ => &[],
+    });
+    let ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    let ends = places.fold(ends, |ends, place| {
+        [0, 1].map(|k| [ends[k][0].min(place[k]), ends[k][1].max(place[k])])
+    });
+    (ends.map(|[low, high]| 0.5 * (low + high)), ends.map(|[low, high]| 0.5 * (high - low)))
+}
+
+/// The last of some snapshots, with the tool's way through all.
+fn drawing(view: &View, satellite: &Satellite, task: &Task, way: &[Snapshot]) -> Vec<Mark> {
+    let Some(now) = way.last() else { return Vec::new() };
+    let place = |corner: &Vector3<f64>| view.of(&(now.base + now.attitude * corner));
+    let is_near = |place: &Vector3<f64>| view.towards.dot(&(place - now.base)) > 0.0;
+    let (mut behind, mut before) = (Vec::new(), Vec::new());
+    let tool: Vec<Vector3<f64>> = way.iter().filter_map(|s| s.arm.last().copied()).collect();
+    for piece in tool.chunk_by(|a, b| is_near(a) == is_near(b)) {
+        let marks = if is_near(&piece[0]) { &mut before } else { &mut behind };
+        let points = piece.iter().map(|place| view.of(place)).collect();
+        marks.push(Mark::Line(Line::new("", Stroke::plain(COLOURS[1], 0.25), points)));
+    }
+    for link in now.arm.windows(2) {
+        let ends = [view.of(&link[0]), view.of(&link[1])];
+        let stroke = Stroke::plain(INK, 0.9).with_marker(Marker::Circle);
+        let marks = if is_near(&(0.5 * (link[0] + link[1]))) { &mut before } else { &mut behind };
+        marks.push(Mark::Line(Line::new("", stroke, ends.to_vec())));
+    }
+    for panel in &satellite.panels {
+        let panel = panel.corners().map(Vector3::from);
+        let middle = now.base + now.attitude * (0.25 * panel.iter().sum::<Vector3<f64>>());
+        let corners = panel.iter().map(place).collect();
+        let marks = if is_near(&middle) { &mut before } else { &mut behind };
+        marks.insert(0, Mark::Area { colour: mix(COLOURS[0], PAPER, 0.55), corners });
+    }
+    let mut marks = behind;
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let mut normal = Vector3::zeros();
+            normal[axis] = side;
+            if view.towards.dot(&(now.attitude * normal)) > 0.0 {
+                let corners = face(satellite.half, axis, side).iter().map(place).collect();
+                marks.push(Mark::Area {
+                    colour: mix(GRID, INK, 0.02 + 0.14 * axis as f64),
+                    corners,
+                });
+            }
+        }
+    }
+    marks.extend(goal(view, satellite, task, now));
+    marks.extend(before);
+    marks
+}
+
+/// The edges of the base's box in its goal attitude, where the base is now.
+fn goal(view: &View, satellite: &Satellite, task: &Task, now: &Snapshot) -> Vec<Mark> {
+    let place = |corner: &Vector3<f64>| view.of(&(now.base + task.goal.base * corner));
+    let edges = [-1.0, 1.0].into_iter().flat_map(|side| {
+        let corners = face(satellite.half, 2, side);
+        (0..4).map(move |k| [corners[k], corners[(k + 1) % 4]])
+    });
+    let uprights = face(satellite.half, 2, -1.0).into_iter().zip(face(satellite.half, 2, 1.0));
+    let edges = edges.chain(uprights.map(|(low, high)| [low, high]));
+    let stroke = Stroke { dashes: DASHES[2], ..Stroke::plain(INK, 0.12) };
+    let edge = |ends: [Vector3<f64>; 2]| Line {
+        name: String::new(),
+        stroke,
+        points: ends.iter().map(place).collect(),
+        marked: Marked::Points,
+    };
+    edges.map(|ends| Mark::Line(edge(ends))).collect()
+}

@@ -1,0 +1,169 @@
+//! The instances of a sweep over the reorientation task.
+
+use std::num::NonZeroU64;
+use std::sync::Arc;
+
+use toml::Spanned;
+
+use super::best_known::BestKnown;
+use super::kind::{Evaluations, Sweep, TaskKeys};
+use super::settings::TrajectoryTable;
+use super::subject::TaskSubject;
+use super::symbols::K_B;
+use crate::experiment::{Coordinate, Instance, Value};
+use crate::input::{Document, InputError, Positive};
+use crate::task::{PoseTable, Task, TaskTable};
+
+/// Targets where the file states none: by which shares they exceed the best known cost.
+const GAPS: [f64; 3] = [0.1, 0.01, 0.001];
+
+/// A task on its way through the lists, with what they have set so far.
+#[derive(Clone)]
+struct Draft {
+    label: String,
+    title: String,
+    coordinates: Vec<Coordinate>,
+    task: Task,
+    terms: Spanned<usize>,
+    budget: Option<NonZeroU64>,
+}
+
+/// The cross product of the sweep's lists; instances that differ in the pose alone are one group.
+pub(super) fn instances(
+    TaskKeys { task, trajectory, sweep }: &TaskKeys,
+    document: &Document,
+) -> Result<Vec<Instance>, InputError> {
+    let poses = poses(task, sweep, document)?;
+    let posed: Vec<Task> =
+        poses.iter().map(|pose| task.with_pose(pose).build(document)).collect::<Result<_, _>>()?;
+    // The task's own start and goal need not fit the robot where poses replace them.
+    let task = posed.first().map_or_else(|| task.build(document), |task| Ok(task.clone()))?;
+    let first = Draft {
+        label: String::new(),
+        title: String::new(),
+        coordinates: Vec::new(),
+        task,
+        terms: trajectory.terms().clone(),
+        budget: None,
+    };
+    let mut instances = Vec::new();
+    for group in drafts(first, sweep) {
+        let numbered: Vec<(usize, &Task)> = (1..).zip(&posed).collect();
+        let drafts = cross(vec![group.clone()], "pose", &numbered, |draft, (number, posed)| {
+            draft.task.start = posed.start.clone();
+            draft.task.goal = posed.goal.clone();
+            Value::Count(*number as u64)
+        });
+        for draft in drafts {
+            instances.push(Instance {
+                group: group.label.clone(),
+                title: group.title.clone(),
+                ..draft.build(trajectory, document)?
+            });
+        }
+    }
+    Ok(instances)
+}
+
+/// The pairs of start and goal that replace the task's.
+fn poses(
+    task: &TaskTable,
+    sweep: &Sweep,
+    document: &Document,
+) -> Result<Vec<PoseTable>, InputError> {
+    match &sweep.random_poses {
+        None => Ok(sweep.pose.clone()),
+        Some(random) if sweep.pose.is_empty() => Ok(random.get_ref().draw(&task.robot(document)?)),
+        Some(random) => {
+            let message = "found both `pose` and `random_poses`, expected one of them";
+            Err(document.error_at(random.span(), message, None))
+        }
+    }
+}
+
+/// The cross product of all lists but the poses.
+fn drafts(first: Draft, sweep: &Sweep) -> Vec<Draft> {
+    let limit = |order: usize| {
+        move |draft: &mut Draft, limit: &Positive| {
+            draft.task.limits.0.iter_mut().for_each(|l| l[order] = limit.0.to_radians());
+            Value::Real(limit.0)
+        }
+    };
+    let mut drafts = cross(vec![first], "weight_base", &sweep.weight_base, |draft, weight| {
+        draft.task.base_weight = weight.0;
+        Value::Real(weight.0)
+    });
+    drafts = cross(drafts, "rate_limit_deg_s", &sweep.rate_limit_deg_s, limit(0));
+    drafts = cross(drafts, "acceleration_limit_deg_s2", &sweep.acceleration_limit_deg_s2, limit(1));
+    drafts = cross(drafts, "jerk_limit_deg_s3", &sweep.jerk_limit_deg_s3, limit(2));
+    drafts = cross(drafts, "terms", &sweep.terms, |draft, terms| {
+        draft.terms = terms.clone();
+        Value::Count(*terms.get_ref() as u64)
+    });
+    cross(drafts, "budget", &sweep.budget, |draft, Evaluations(evaluations)| {
+        draft.budget = Some(*evaluations);
+        Value::Count(evaluations.get())
+    })
+}
+
+/// Every draft with every value of one list; a list without values leaves the drafts alone.
+fn cross<T>(
+    drafts: Vec<Draft>,
+    name: &str,
+    values: &[T],
+    set: impl Fn(&mut Draft, &T) -> Value,
+) -> Vec<Draft> {
+    if values.is_empty() {
+        return drafts;
+    }
+    let with = |draft: &Draft, value: &T| {
+        let mut draft = draft.clone();
+        let value = set(&mut draft, value);
+        let shown = match &value {
+            Value::Real(number) => number.to_string(),
+            Value::Count(count) => count.to_string(),
+            _ => String::new(),
+        };
+        for (text, part) in
+            [(&mut draft.label, format!("{name}={shown}")), (&mut draft.title, title(name, &shown))]
+        {
+            let space = if text.is_empty() { "" } else { " " };
+            *text += space;
+            *text += &part;
+        }
+        draft.coordinates.push(Coordinate { setting: name.to_owned(), value });
+        draft
+    };
+    drafts.iter().flat_map(|draft| values.iter().map(|value| with(draft, value))).collect()
+}
+
+/// A setting with its symbol and unit, as charts write it.
+pub(super) fn title(setting: &str, value: &str) -> String {
+    match setting {
+        "weight_base" => format!("{K_B} = {value}"),
+        "rate_limit_deg_s" => format!("rate ≤ {value} °/s"),
+        "acceleration_limit_deg_s2" => format!("acceleration ≤ {value} °/s²"),
+        "jerk_limit_deg_s3" => format!("jerk ≤ {value} °/s³"),
+        "terms" => format!("terms = {value}"),
+        _ => format!("{setting}={value}"),
+    }
+}
+
+impl Draft {
+    fn build(
+        self,
+        trajectory: &TrajectoryTable,
+        document: &Document,
+    ) -> Result<Instance, InputError> {
+        let table = trajectory.with_terms(self.terms);
+        let (problem, boxes) = table.build(Arc::new(self.task), document)?;
+        let known = BestKnown::of(&problem);
+        let targets = known.into_iter().flat_map(|known| GAPS.map(|gap| known.target(gap)));
+        let targets: Vec<f64> = targets.collect();
+        let subject = TaskSubject::new(Arc::new(problem), boxes);
+        let mut instance = Instance::new(self.label, Arc::new(subject)).with_targets(targets);
+        instance.coordinates = self.coordinates;
+        instance.budget = self.budget;
+        Ok(instance)
+    }
+}
