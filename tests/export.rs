@@ -3,10 +3,8 @@
 
 use std::fs;
 use std::num::NonZeroU64;
-use std::sync::Arc;
 
-use driftless::analysis;
-use driftless::experiment::{self, Instance, Plan, Progress, Record, RunSpec, Store};
+use driftless::experiment::{self, Entrant, Instance, Plan, Progress, Record, RunSpec, Store};
 use driftless::export::{ExportedRun, Suite, SuiteError, SuiteFormat, write_suite};
 use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
@@ -35,8 +33,11 @@ struct HalfSound {
 impl HalfSound {
     fn instance(label: &str, group: &str, half: Half, always: bool, dimension: usize) -> Instance {
         let bounds = Bounds::new(vec![[-1.0, 1.0]; dimension]);
-        let problem = Arc::new(Self { half, always, bounds });
-        Instance { group: group.to_owned(), ..Instance::other(label, "half", problem) }
+        let problem = Self { half, always, bounds };
+        let mut instance = Instance::of_problem("half", label, problem);
+        label.clone_into(&mut instance.label);
+        group.clone_into(&mut instance.group);
+        instance
     }
 }
 
@@ -66,10 +67,10 @@ fn suite(instances: Vec<Instance>) -> (Suite, Vec<u64>) {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::open(folder.path()).unwrap();
     let field = ["random", "scp"].map(|name| Settings::by_name(name).unwrap());
-    let plan = Plan::over("halves", instances, &field, number(8), number(20));
+    let plan = Plan::over("halves", instances, field, number(8), number(20));
     let specs: Vec<&RunSpec> = plan.runs.iter().collect();
     experiment::run(&plan, &specs, &store, 1, &Watch::default(), &Silent).unwrap();
-    let runs = analysis::load(&plan, &store).unwrap();
+    let runs = experiment::load(&plan, &store).unwrap();
     let suite = Suite::new(&plan, &runs).unwrap();
     (suite, runs.iter().map(|run| run.evaluations).collect())
 }
@@ -107,9 +108,11 @@ fn every_run_is_a_trial_from_its_first_to_its_last_evaluation() {
 /// The least cost found stands in where none is known; of sound test functions it is zero.
 #[test]
 fn optima_are_known_or_least_found() {
-    let sphere = Arc::new(Analytic::new(TestFunction::Sphere, 4, 1));
+    let sphere = Analytic::new(TestFunction::Sphere, 4, 1);
     let mut instances = halves();
-    instances.push(Instance::other("e", "sphere", sphere));
+    let mut instance = Instance::of_problem("sphere", 1, sphere);
+    (instance.label, instance.group) = ("e".to_owned(), "e".to_owned());
+    instances.push(instance);
     let (suite, _) = suite(instances);
     let [mixed, none, sphere] = &suite.functions[..] else { panic!() };
     for (i, objective) in mixed.instances.iter().enumerate() {
@@ -160,10 +163,9 @@ fn groups_may_have_several_dimensions() {
 /// Labels that differ in signs or capitals alone have folders of their own.
 #[test]
 fn folders_are_told_apart() {
-    let problem = || Arc::new(Analytic::new(TestFunction::Sphere, 2, 0));
-    let field = Settings::all();
-    let instances = vec![Instance::other("", "sphere", problem())];
-    let mut plan = Plan::over("labels", instances, &field, number(1), number(1));
+    let problem = Analytic::new(TestFunction::Sphere, 2, 0);
+    let instances = vec![Instance::of_problem("sphere", 0, problem)];
+    let mut plan = Plan::over("labels", instances, Settings::all(), number(1), number(1));
     for (entrant, label) in plan.optimisers.iter_mut().zip(["a/b", "a b", "A=b", "a_b-2"]) {
         label.clone_into(&mut entrant.label);
     }
@@ -175,10 +177,15 @@ fn folders_are_told_apart() {
 /// Sixteen bits number the functions.
 #[test]
 fn too_many_functions_are_an_error() {
-    let problem = Arc::new(Analytic::new(TestFunction::Sphere, 2, 0));
-    let instance = |i: usize| Instance::other(&i.to_string(), "sphere", problem.clone());
+    let sphere = Instance::of_problem("sphere", 0, Analytic::new(TestFunction::Sphere, 2, 0));
+    let instance = |i: usize| {
+        let mut instance = sphere.clone();
+        (instance.label, instance.group) = (i.to_string(), i.to_string());
+        instance
+    };
     let plan = |count: usize| {
-        Plan::over("many", (0..count).map(instance).collect(), &[], number(1), number(1))
+        let instances = (0..count).map(instance).collect();
+        Plan::over("many", instances, [] as [Entrant; 0], number(1), number(1))
     };
     let suite = |count| Suite::new(&plan(count), &[]);
     assert_eq!(suite(65_535).unwrap().functions.len(), 65_535);

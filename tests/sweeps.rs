@@ -4,11 +4,15 @@
 
 use std::sync::Arc;
 
-use driftless::analysis::{self, Run, best_run};
-use driftless::experiment::{self, ExperimentFile, Plan, Progress, Record, RunSpec, Store};
+use driftless::experiment::{
+    self, Experiment, Instance, Plan, Progress, Record, Run, RunSpec, Store, best_runs, load,
+};
 use driftless::input::Document;
 use driftless::optimiser::{Ending, Scp};
-use driftless::reorientation::{BestKnown, Formulated, Formulation, TaskFile};
+use driftless::registry::registry;
+use driftless::reorientation::{
+    BestKnown, Formulated, Formulation, Reorientation, TaskFile, TaskSubject,
+};
 use driftless::search::{Oracle, Watch};
 
 struct Quiet;
@@ -19,18 +23,38 @@ impl Progress for Quiet {
 
 fn plan(text: &str) -> Plan {
     let document = Document::embedded("experiment.toml", text);
-    Plan::new(&ExperimentFile::read(&document).unwrap(), &document).unwrap()
+    Experiment::read(&document, &registry()).unwrap().plan().unwrap()
 }
 
-/// Runs an experiment; the best run of each instance.
-fn best_runs(plan: &Plan) -> Vec<Run> {
+/// The best motion of an instance.
+struct Best {
+    cost: f64,
+    residual_deg: f64,
+    duration: f64,
+    coefficients: Vec<f64>,
+}
+
+fn task(instance: &Instance) -> &Reorientation {
+    TaskSubject::of(instance).unwrap().reorientation()
+}
+
+/// Runs an experiment of `scp`; the best motion of each instance.
+fn best_motions(plan: &Plan) -> Vec<Best> {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::open(folder.path()).unwrap();
     let all: Vec<&RunSpec> = plan.runs.iter().collect();
     experiment::run(plan, &all, &store, 2, &Watch::default(), &Quiet).unwrap();
-    let runs = analysis::load(plan, &store).unwrap();
-    let best = |i| best_run(runs.iter().filter(|run| run.instance == i)).unwrap().clone();
-    (0..plan.instances.len()).map(best).collect()
+    let runs = load(plan, &store).unwrap();
+    let measure = |run: &Run, name| run.measure(plan.measure(name).unwrap());
+    let best = |run: &Run| Best {
+        cost: run.cost,
+        residual_deg: measure(run, "residual_deg"),
+        duration: measure(run, "t_f"),
+        coefficients: run.x.clone(),
+    };
+    let best: Vec<Best> = best_runs(plan, &runs).into_iter().map(best).collect();
+    assert_eq!(best.len(), plan.instances.len());
+    best
 }
 
 /// While jerk alone limits a motion its jerks scale with `t_f⁻³`, so `t_f ∝ j̄^(−1/3)`; its rates scale
@@ -42,9 +66,9 @@ fn durations_follow_the_jerk_limit_until_a_rate_joins() {
         "name = 'jerk'\nseeds = 1\nbudget = {{ evaluations = 150_000 }}\n\
          [sweep]\njerk_limit_deg_s3 = {LIMITS:?}\n[[optimiser]]\nscp = {{ starts = 12 }}\n"
     ));
-    let best = best_runs(&plan);
+    let best = best_motions(&plan);
     let reference = &best[1];
-    let problem = plan.instances[1].reorientation().unwrap();
+    let problem = task(&plan.instances[1]);
     let motion = problem.assess(&reference.coefficients, Some(reference.duration));
     let reached = |order: usize, limit: f64| {
         let peaks = motion.peaks.0.iter().map(|peaks| peaks[order].value.to_degrees());
@@ -76,7 +100,7 @@ fn the_base_comes_home_as_soon_as_it_is_worth_its_time() {
         "name = 'weight'\nseeds = 1\nbudget = {{ evaluations = 150_000 }}\n\
          [sweep]\nweight_base = {WEIGHTS:?}\n[[optimiser]]\nscp = {{ starts = 20 }}\n"
     ));
-    let best = best_runs(&plan);
+    let best = best_motions(&plan);
     let (fastest, home) = (&best[0], &best[5]);
     let left = (fastest.residual_deg / 2.0).to_radians().sin() / 0.5_f64.to_radians().sin();
     let ratio = (home.duration - fastest.duration) / left;
@@ -155,7 +179,7 @@ fn random_poses_are_within_their_bounds() {
         let group = format!("terms={}", 1 + i / 100);
         assert_eq!(instance.group, group);
         assert_eq!(instance.label, format!("{group} pose={}", 1 + i % 100));
-        let task = instance.reorientation().unwrap().task();
+        let task = task(instance).task();
         let turn = task.start.base.angle_to(&task.goal.base).to_degrees();
         assert!(turn <= 25.0 + 1e-6, "{turn}");
         furthest = furthest.max(turn);

@@ -86,8 +86,7 @@ impl Blocks {
                 "Blocks are {n} instances, those with the largest budget, each with the median cost over its seeds."
             ),
         };
-        told += " Costs that differ by less than 10⁻⁶ of themselves, on other problems than the task by less than 10⁻⁸, \
-            are taken for the same.";
+        told += " Costs that differ by less than searches leave open are taken for the same.";
         if self.least_p() * self.pairs.len() as f64 > ALPHA {
             told += " With so few blocks no pair can differ significantly.";
         }

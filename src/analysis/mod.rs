@@ -4,7 +4,7 @@ mod blocks;
 mod format;
 mod grouped;
 #[cfg(test)]
-mod handmade;
+pub(crate) mod handmade;
 mod pairs;
 pub mod statistics;
 mod summary;

@@ -32,7 +32,7 @@ pub fn least_found(plan: &Plan, runs: &[Run]) -> Vec<f64> {
 
 /// The targets that the experiment has; for an instance without, those of
 /// Moré and Wild (2009), doi 10.1137/080724083: `f_L + τ (f(x_0) − f_L)` for τ of 10⁻¹, 10⁻³ and 10⁻⁵,
-/// with `x_0` in the middle of the box, on the task the motion without bumps, and `f_L` the least cost that
+/// with `x_0` in the middle of the box, and `f_L` the least cost that
 /// any of the runs has found. Where none has found any, there is nothing that a run could reach.
 pub fn targets(plan: &Plan, runs: &[Run]) -> Targets {
     let found = least_found(plan, runs);

@@ -95,12 +95,21 @@ impl Experiment {
         }
         check_instances(&instances, document)?;
         self.check_labels(&optimisers)?;
-        let experiment = self.clone().with_targets(&instances);
+        Ok(self.spelt_out(instances, optimisers, runs))
+    }
+
+    fn spelt_out(
+        &self,
+        instances: Vec<Instance>,
+        optimisers: Vec<Entrant>,
+        runs: Vec<RunSpec>,
+    ) -> Plan {
         let subjects = || instances.iter().map(|instance| &instance.subject);
         let facts = unlike(subjects().flat_map(|s| s.facts()).map(|(quantity, _)| quantity));
         let measures = unlike(subjects().flat_map(|s| s.measures()));
+        let experiment = self.clone().with_targets(&instances);
         let name = self.name.clone();
-        Ok(Plan { name, instances, optimisers, runs, experiment, facts, measures })
+        Plan { name, instances, optimisers, runs, experiment, facts, measures }
     }
 
     /// Whether budgets are set in one way only: for each optimiser, or for each instance.
@@ -232,6 +241,33 @@ fn identity(instance: &Instance) -> serde_json::Value {
 }
 
 impl Plan {
+    /// Every optimiser of the field on every instance, for seeds 1, 2, … up to `seeds`, with `budget` evaluations
+    /// per run. Unlike [`Experiment::plan`] it checks nothing: a run of an optimiser that needs derivatives where there
+    /// are none, for instance, ends with a record that says so.
+    pub fn over(
+        name: &str,
+        instances: Vec<Instance>,
+        field: impl IntoIterator<Item = impl Into<Entrant>>,
+        seeds: NonZeroU64,
+        budget: NonZeroU64,
+    ) -> Self {
+        let entries = field.into_iter().map(|entrant| Entry::from(entrant.into()));
+        let experiment = Experiment {
+            name: name.to_owned(),
+            seeds,
+            budget,
+            targets: None,
+            source: None,
+            instances: instances.clone(),
+            field: entries.collect(),
+            field_place: 0..0,
+            document: Document::embedded(name, ""),
+        };
+        let optimisers = labelled(&experiment.field, &instances);
+        let runs = runs(&instances, &optimisers, seeds, budget);
+        experiment.spelt_out(instances, optimisers, runs)
+    }
+
     /// Whether some optimisers may spend more than others on the same instance.
     pub fn is_uneven(&self) -> bool {
         let mut pairs = self.runs.iter().zip(self.runs.iter().skip(1));

@@ -7,9 +7,9 @@ mod figure;
 pub(crate) mod marks;
 pub(crate) mod panel;
 pub(crate) mod sheet;
+#[cfg(test)]
+pub(crate) mod stored_pictures;
 pub(crate) mod style;
 
 pub use error::FigureError;
 pub use figure::Figure;
-#[cfg(test)]
-pub(crate) use figure::png;

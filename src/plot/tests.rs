@@ -1,43 +1,26 @@
-//! Every chart drawn from fixed data, beside a stored picture; and no two texts that touch.
-//!
-//! `DRIFTLESS_ACCEPT_CHARTS=1` stores what is drawn now. What differs is left in `target/charts`.
+//! Every chart drawn from fixed data.
 
-use std::f64::consts::TAU;
-use std::fs;
-use std::path::Path;
-
-use nalgebra::UnitQuaternion;
 use polars::prelude::*;
-use resvg::usvg;
 
 use super::curves::curves;
 use super::{
-    Looks, Swept, base_attitude, convergence, critical_difference, derivatives, effect_sizes,
-    expected_running_time, final_costs, joint_angles, pareto, profiles, running_time_distribution,
-    snapshots, sweep,
+    Looks, convergence, critical_difference, effect_sizes, expected_running_time, final_costs,
+    profiles, running_time_distribution,
 };
 use crate::experiment::Entrant;
-use crate::figure::{Figure, png};
+use crate::figure::Figure;
+use crate::figure::stored_pictures::check;
 use crate::optimiser::{Hybrid, Settings};
-use crate::reorientation::{JointMotion, Motion, TaskFile};
-
-/// Resolution of the stored pictures \[dots per inch\].
-const DPI: f32 = 110.0;
 
 /// A field of all kinds, with labels as long as they get.
 fn field(count: usize) -> Vec<Entrant> {
     let pso = Settings::by_name("pso").unwrap();
     let mut kinds = Settings::all();
     kinds.push(Settings::Hybrid(Hybrid { search: Box::new(pso), ..Hybrid::default() }));
-    let label = |(i, settings): (usize, Settings)| Entrant {
-        label: format!(
-            "{}/time-free{}",
-            settings.title(),
-            ["", " population=150", " b"][i / 9 % 3]
-        ),
-        settings,
-        seeds: None,
-        budget: None,
+    let label = |(i, settings): (usize, Settings)| {
+        let label =
+            format!("{}/time-free{}", settings.title(), ["", " population=150", " b"][i / 9 % 3]);
+        Entrant::from(settings).labelled(&label)
     };
     kinds.into_iter().cycle().take(count).enumerate().map(label).collect()
 }
@@ -172,50 +155,8 @@ fn effects(count: usize) -> Figure {
     effect_sizes(&frame.unwrap(), &ranks).unwrap()
 }
 
-fn best(column: &str, values: &[f64]) -> DataFrame {
-    df!(
-        "instance" => values.iter().map(|v| format!("{column}={v}")).collect::<Vec<_>>(),
-        column => values,
-        "best J" => real(values.iter().map(|v| 0.6 + 0.3 / v)),
-        "residual [°]" => real(values.iter().map(|v| if *v < 0.15 { 29.0 } else { 0.0 })),
-        "t_f [s]" => real(values.iter().map(|v| 7.8 * (v / 80.0).powf(-1.0 / 3.0).max(0.6))),
-    )
-    .unwrap()
-}
-
-fn swept(setting: Swept, values: &[f64], bound: Option<f64>) -> Figure {
-    sweep(&best(setting.column(), values), setting, bound).unwrap().unwrap()
-}
-
-fn front() -> Figure {
-    let frame = df!(
-        "instance" => (0..5).map(|i| format!("weight_base={i}")).collect::<Vec<_>>(),
-        "weight_base" => [0.01, 0.1, 0.2, 0.5, 0.9],
-        "t_f [s]" => [2.8, 2.8, 5.0, 7.0, 7.8],
-        "residual [°]" => [29.0, 29.0, 12.0, 14.0, 0.0],
-        "efficient" => [true, true, true, false, true],
-    );
-    pareto(&frame.unwrap()).unwrap().unwrap()
-}
-
-fn motion() -> Motion {
-    let time: Vec<f64> = (0..=200).map(|i| f64::from(i) * 0.05).collect();
-    let joint = |i: usize| JointMotion {
-        name: format!("joint{}", i + 1),
-        derivatives: time
-            .iter()
-            .map(|t| std::array::from_fn(|k| (t * TAU / 10.0 + (i + k) as f64).sin() * 1.2))
-            .collect(),
-    };
-    let base = |t: &f64| UnitQuaternion::from_euler_angles(0.1 * t.sin(), 0.03 * t, -0.02 * t);
-    Motion { joints: (0..7).map(joint).collect(), base: time.iter().map(base).collect(), time }
-}
-
 /// Every chart by name.
 fn charts() -> Vec<(&'static str, Figure)> {
-    let document = TaskFile::paper();
-    let (problem, _) = TaskFile::read(&document).unwrap().build(&document).unwrap();
-    let task = problem.task();
     vec![
         ("convergence", convergence_of(5, &[""])),
         (
@@ -233,88 +174,12 @@ fn charts() -> Vec<(&'static str, Figure)> {
         ("effect-sizes-crowd", effects(20)),
         ("critical-difference", differences(4)),
         ("critical-difference-crowd", differences(20)),
-        ("weight-sweep", swept(Swept::WeightBase, &[0.001, 0.01, 0.1, 0.2, 0.5, 0.9], None)),
-        ("jerk-sweep", swept(Swept::JerkLimit, &[20.0, 40.0, 80.0, 160.0, 320.0, 640.0], None)),
-        ("rate-sweep", swept(Swept::RateLimit, &[10.0, 20.0, 40.0, 60.0], None)),
-        ("terms-sweep", swept(Swept::Terms, &[1.0, 2.0, 3.0, 4.0, 8.0], Some(0.6))),
-        ("pareto", front()),
-        ("joint-angles", joint_angles(&motion())),
-        ("joint-derivatives", derivatives(&motion(), &task.limits)),
-        ("base-attitude", base_attitude(&motion(), task)),
-        ("snapshots", snapshots(&Motion::sample(&problem, &[0.1; 12], 8.0, 100), task)),
     ]
-}
-
-fn decoded(bytes: &[u8]) -> (u32, Vec<u8>) {
-    let mut reader = ::png::Decoder::new(bytes).read_info().unwrap();
-    let mut pixels = vec![0; reader.output_buffer_size()];
-    let info = reader.next_frame(&mut pixels).unwrap();
-    (info.width, pixels)
 }
 
 #[test]
 fn charts_look_as_stored() {
-    let (stored, drawn) = (Path::new("tests/charts"), Path::new("target/charts"));
-    let mut changed = Vec::new();
-    for (name, figure) in charts() {
-        let bytes = png(&figure.tree().unwrap(), DPI).unwrap();
-        let file = format!("{name}.png");
-        if std::env::var_os("DRIFTLESS_ACCEPT_CHARTS").is_some() {
-            fs::create_dir_all(stored).unwrap();
-            fs::write(stored.join(&file), &bytes).unwrap();
-        }
-        let expected = fs::read(stored.join(&file)).ok().map(|bytes| decoded(&bytes));
-        let (width, pixels) = decoded(&bytes);
-        // Last digits of sines may differ, so an edge's pixel may be a little darker; no more.
-        let is_same = expected.is_some_and(|(expected_width, expected)| {
-            let far = expected.iter().zip(&pixels).filter(|(a, b)| a.abs_diff(**b) > 40).count();
-            width == expected_width && pixels.len() == expected.len() && far * 5000 < pixels.len()
-        });
-        if !is_same {
-            fs::create_dir_all(drawn).unwrap();
-            fs::write(drawn.join(&file), &bytes).unwrap();
-            changed.push(file);
-        }
-    }
-    assert!(changed.is_empty(), "look at {changed:?} in {}", drawn.display());
-}
-
-/// All texts, with the bounding boxes of what is seen of them.
-fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
-    let of = |node: &usvg::Node| match node {
-        usvg::Node::Group(group) => texts(group),
-        usvg::Node::Text(text) => {
-            let chunks = text.chunks().iter().map(usvg::TextChunk::text);
-            let seen = text.flattened().bounding_box().transform(text.abs_transform());
-            vec![(chunks.collect(), seen.unwrap())]
-        }
-        _ => Vec::new(),
-    };
-    group.children().iter().flat_map(of).collect()
-}
-
-#[test]
-fn no_text_touches_another_or_the_edge() {
-    for (name, figure) in charts() {
-        let tree = figure.tree().unwrap();
-        let texts = texts(tree.root());
-        assert!(!texts.is_empty(), "{name} has no text");
-        for (i, (text, a)) in texts.iter().enumerate() {
-            let size = tree.size();
-            let is_within = a.left() >= 0.0
-                && a.top() >= 0.0
-                && a.right() <= size.width()
-                && a.bottom() <= size.height();
-            assert!(is_within, "{name}: {text:?} is cut off: {a:?} of {size:?}");
-            for (other, b) in &texts[i + 1..] {
-                let apart = a.right() <= b.left()
-                    || b.right() <= a.left()
-                    || a.bottom() <= b.top()
-                    || b.bottom() <= a.top();
-                assert!(apart, "{name}: {text:?} touches {other:?}");
-            }
-        }
-    }
+    check(&charts());
 }
 
 #[test]

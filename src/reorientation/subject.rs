@@ -14,6 +14,7 @@ use crate::exhibit::Exhibits;
 use crate::experiment::{
     Instance, Judgement, Plan, Quantity, Run, Subject, Unavailable, Value, ValueKind,
 };
+use crate::lanes::Width;
 use crate::search::Problem;
 
 /// The name of the kind.
@@ -51,6 +52,12 @@ impl TaskSubject {
     /// The task over its family.
     pub fn reorientation(&self) -> &Reorientation {
         &self.problem
+    }
+
+    /// The same, evaluated with so many lanes; see [`Reorientation::with_width`].
+    #[must_use]
+    pub fn with_width(&self, width: Width) -> Self {
+        Self { problem: Arc::new(self.problem.with_width(width)), boxes: self.boxes.clone() }
     }
 
     fn formulated(&self, space: &str) -> Result<Formulated, Unavailable> {

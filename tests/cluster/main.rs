@@ -8,8 +8,9 @@ mod tables;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use driftless::experiment::{ExperimentFile, Plan};
+use driftless::experiment::Experiment;
 use driftless::input::Document;
+use driftless::registry::registry;
 use slurm::{Array, output, until};
 use tempfile::TempDir;
 
@@ -116,7 +117,7 @@ fn here(path: &str) -> PathBuf {
 /// The runs of each task: those at every fourth place of the plan.
 fn shares() -> [Vec<String>; TASKS] {
     let document = Document::read(&here(EXPERIMENT)).unwrap();
-    let plan = Plan::new(&ExperimentFile::read(&document).unwrap(), &document).unwrap();
+    let plan = Experiment::read(&document, &registry()).unwrap().plan().unwrap();
     let keys: Vec<String> = plan.runs.into_iter().map(|run| run.key).collect();
     std::array::from_fn(|task| keys.iter().skip(task).step_by(TASKS).cloned().collect())
 }

@@ -29,7 +29,7 @@ pub(super) fn targets(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     )?;
     let caption = "Costs to reach, and where they come from: stated in experiment.toml or following there from the best \
         known cost; else those of Moré and Wild, τ of the way from the least cost that any of the runs found to that in \
-        the middle of the box, on the task the motion without bumps.";
+        the middle of the box.";
     Ok(Table::of("targets", caption, frame))
 }
 

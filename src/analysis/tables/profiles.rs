@@ -35,8 +35,8 @@ pub(super) fn tables(analysis: &Analysis<'_>) -> PolarsResult<[Table; 2]> {
             "data-profiles",
             format!(
                 "Share of {most} problems, each an instance with a seed that all optimisers tried, whose target is reached \
-                 within so many simplex gradients, n + 1 evaluations each, by each of {pool}. On the task n is the number of \
-                 the paper's variables, whatever the formulation."
+                 within so many simplex gradients, n + 1 evaluations each, by each of {pool}. n is the same for all formulations of a \
+                 problem."
             ),
             data.into_frame("simplex gradients")?,
         ),

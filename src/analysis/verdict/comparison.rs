@@ -201,14 +201,11 @@ impl<'a> Standings<'a> {
     }
 
     fn blocks_mean(&self) -> String {
-        match (self.blocks.unit, self.analysis.plan.cost_symbol()) {
-            (Unit::Seeds, "J") => {
-                "Blocks are the seeds of one task, which says nothing about other tasks.".to_owned()
-            }
-            (Unit::Seeds, _) => {
+        match self.blocks.unit {
+            Unit::Seeds => {
                 "Blocks are the seeds of one instance, which says nothing about others.".to_owned()
             }
-            (Unit::Instances, _) => {
+            Unit::Instances => {
                 format!("Blocks are {}, each with the median over its seeds.", self.blocks_told())
             }
         }

@@ -1,8 +1,7 @@
 //! Tests that findings say nothing untrue where a simple summary would.
 
-use super::tests::{answer, best_known, findings, functions};
-use crate::analysis::Run;
-use crate::analysis::handmade::{plan, runs};
+use super::tests::functions;
+use crate::analysis::handmade::{answer, findings, plan, runs};
 
 const TWO: &str = "name = ['sphere', 'rastrigin']";
 
@@ -56,24 +55,6 @@ fn shifts_of_a_function_are_not_independent_but_functions_are() {
     assert!(!different.contains("independent"), "{different}");
 }
 
-/// No run finds a motion, which leaves the tests what they are.
-#[test]
-fn poses_are_independent_whatever_the_budgets_beside_them() {
-    let significance = |sweep: &str| {
-        let plan = plan(&format!(
-            "seeds = 1\nbudget = {{ evaluations = 9 }}\n[sweep]\n{sweep}\n\
-             [[optimiser]]\nde = {{}}\n[[optimiser]]\nrandom = {{}}\n"
-        ));
-        let told = findings(&plan, &runs(&plan, |_| vec![]));
-        answer(&told, "Is it significant?").to_owned()
-    };
-    let poses = significance("random_poses = { count = 3, seed = 1 }\nbudget = [10, 20]");
-    assert!(poses.contains("Blocks are 3 instances"), "{poses}");
-    assert!(!poses.contains("independent"), "{poses}");
-    let terms = significance("terms = [2, 3]");
-    assert!(terms.contains("Settings of one task are not independent"), "{terms}");
-}
-
 #[test]
 fn functions_are_no_sweep() {
     let plan = functions(2, TWO, &["random"]);
@@ -83,41 +64,6 @@ fn functions_are_no_sweep() {
         "There is one optimiser only, so there is nothing to compare."
     );
     assert_eq!(answer(&told, "What does the sweep say?"), "");
-}
-
-/// What a sweep says of runs with the best motion known of another, one cost a run.
-fn sweep(settings: &str, cost: impl Fn(usize) -> f64) -> String {
-    let head = "seeds = 1\nbudget = { evaluations = 9 }\n";
-    let field = "[[optimiser]]\nscp = {}\n";
-    let one = plan(&format!("{head}{field}"));
-    let known = best_known(&one).remove(0);
-    let plan = plan(&format!("{head}[sweep]\n{settings}\n{field}"));
-    let with = |(i, run): (usize, Run)| Run {
-        cost: cost(i),
-        duration: known.duration,
-        residual_deg: known.residual_deg,
-        coefficients: known.coefficients.clone(),
-        ..run
-    };
-    let runs: Vec<Run> =
-        runs(&plan, |_| vec![(1, 1.0)]).into_iter().enumerate().map(with).collect();
-    answer(&findings(&plan, &runs), "What does the sweep say?").to_owned()
-}
-
-#[test]
-fn a_sweep_compares_no_costs_of_different_weights() {
-    assert_eq!(
-        sweep("weight_base = [0.1, 0.2]", |i| 1.0 + i as f64),
-        "Over 2 settings, the best motions take 7.818 s and the residual stays below 0.001°."
-    );
-}
-
-#[test]
-fn a_sweep_tells_no_noise_apart() {
-    assert_eq!(
-        sweep("jerk_limit_deg_s3 = [80.0, 81.0]", |i| 0.5 + 1e-8 * i as f64),
-        "Over 2 settings, the best J is the same, 0.5000; the best motions take 7.818 s and the residual stays below 0.001°."
-    );
 }
 
 /// Eight blocks. The first is below the third in all, by Wilcoxon's test with Holm's factor of 3 at 3 · 2 / 2⁸ = 0.023;
@@ -149,31 +95,4 @@ fn each_of_the_level_ones_is_told_from_the_rest_by_itself() {
     let significance = answer(&told, "Is it significant?");
     let pairs = "random differs from pso; de does not differ significantly from pso.";
     assert!(significance.contains(pairs), "{significance}");
-}
-
-#[test]
-fn all_who_tie_have_the_best_motion() {
-    let plan = plan(
-        "seeds = 1\nbudget = { evaluations = 9 }\n[[optimiser]]\nlabel = 'A'\nscp = {}\n\
-         [[optimiser]]\nlabel = 'B'\nscp = { starts = 2 }\n[[optimiser]]\nlabel = 'C'\nscp = { starts = 3 }\n",
-    );
-    let mut runs = best_known(&plan);
-    runs[0].cost *= 1.0 + 1e-8;
-    runs[2].cost *= 1.0 + 1e-5;
-    let told = findings(&plan, &runs);
-    let good = answer(&told, "How good is it?");
-    assert!(good.starts_with("The best motion is by A and B alike: J 0.781849"), "{good}");
-}
-
-#[test]
-fn what_is_beaten_is_not_what_is_reached() {
-    let plan = plan(
-        "seeds = 1\nbudget = { evaluations = 9 }\n[sweep]\nterms = [2, 3]\n[[optimiser]]\nscp = {}\n",
-    );
-    let mut runs = best_known(&plan);
-    runs[1].cost *= 0.9;
-    let told = findings(&plan, &runs);
-    let good = answer(&told, "How good is it?");
-    let part = "of 2 instances; it was reached within 10⁻⁶ on 1, and beaten by more on 1.";
-    assert!(good.contains(part), "{good}");
 }

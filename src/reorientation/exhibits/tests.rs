@@ -1,1 +1,273 @@
+//! What the task shows, from runs and data made by hand.
 
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use nalgebra::UnitQuaternion;
+
+use super::base_attitude::base_attitude;
+use super::derivatives::derivatives;
+use super::joint_angles::joint_angles;
+use super::pareto::{Trade, pareto};
+use super::snapshots::snapshots;
+use super::sweeps::{Point, Swept, sweep as sweep_chart};
+use crate::analysis::handmade::{answer, findings, plan_on, runs};
+use crate::exhibit::Finding;
+use crate::experiment::{Experiment, Folder, Options, Plan, Progress, Record, Run, RunSpec, load};
+use crate::figure::Figure;
+use crate::figure::stored_pictures::check;
+use crate::lanes::Width;
+use crate::registry::registry;
+use crate::reorientation::best_known::BestKnown;
+use crate::reorientation::motion::{JointMotion, Motion};
+use crate::reorientation::settings::TaskFile;
+use crate::reorientation::subject::{DURATION, RESIDUAL, TaskSubject};
+use crate::search::Watch;
+
+/// The plan of an experiment file without its name.
+fn plan(text: &str) -> Plan {
+    plan_on(text, &registry())
+}
+
+/// The measures of a motion that brings the base home.
+fn measures(plan: &Plan, duration: f64) -> Vec<f64> {
+    let mut measures = vec![f64::NAN; plan.measures().len()];
+    measures[plan.measure(RESIDUAL).unwrap()] = 1e-7;
+    measures[plan.measure(DURATION).unwrap()] = duration;
+    measures
+}
+
+/// Runs of a task that end with the best motion known.
+fn best_known(plan: &Plan) -> Vec<Run> {
+    let known = |run: Run| {
+        let subject = TaskSubject::of(&plan.instances[run.instance]).unwrap();
+        let known = BestKnown::of(subject.reorientation()).unwrap();
+        Run {
+            cost: known.j,
+            measures: measures(plan, known.t_f),
+            x: known.coefficients.concat(),
+            ..run
+        }
+    };
+    runs(plan, |_| vec![(1, 1.0)]).into_iter().map(known).collect()
+}
+
+/// Half angles of 3°, 7.5° and 3.5° make a turn of 17.3°. The limit on rates binds at a jerk of 225 °/s³, as the page
+/// of experiments has it, so at 80 °/s³ the largest rate is ∛(80/225) = 71 % of its limit.
+#[test]
+fn the_best_motion_is_described() {
+    let plan = plan("seeds = 1\nbudget = { evaluations = 9 }\n[[optimiser]]\nscp = {}\n");
+    let told = findings(&plan, &best_known(&plan));
+    assert_eq!(
+        answer(&told, "How good is it?"),
+        "The best motion is by scp/time-free: J 0.781849 (reaches the best known, 0.781849), 7.818 s, and the base ends \
+         within 0.001° of the goal."
+    );
+    let motion = answer(&told, "What does the motion look like?");
+    for part in [
+        "takes 7.818 s",
+        "The goal is 17.3° from",
+        "jerks reach the limit in all joints",
+        "rates up to 71 %",
+    ] {
+        assert!(motion.contains(part), "{motion}");
+    }
+}
+
+#[test]
+fn a_sweep_of_one_optimiser_tells_its_range() {
+    let plan = plan(
+        "seeds = 2\nbudget = { evaluations = 9 }\n[sweep]\nterms = [2, 3]\n[[optimiser]]\nscp = {}\n",
+    );
+    let told = findings(&plan, &best_known(&plan));
+    assert_eq!(
+        answer(&told, "What does the sweep say?"),
+        "Over 2 settings, the best J is least, 0.6315, at terms=3 and largest, 0.7818, at terms=2; the best motions take \
+         6.315 s to 7.818 s and the residual stays below 0.001°."
+    );
+    assert_eq!(answer(&told, "Who won?"), "");
+    assert_eq!(
+        answer(&told, "How good is it?"),
+        "A best cost is known of 2 instances; it was reached within 10⁻⁶ on 2. The base ends within 0.01° of \
+         the goal on 2 of 2 instances, and the best motions take 6.315 s to 7.818 s."
+    );
+    let motion = answer(&told, "What does the motion look like?");
+    assert!(motion.contains("and jerks on 2"), "{motion}");
+}
+
+/// No run finds a motion, which leaves the tests what they are.
+#[test]
+fn poses_are_independent_whatever_the_budgets_beside_them() {
+    let significance = |sweep: &str| {
+        let plan = plan(&format!(
+            "seeds = 1\nbudget = {{ evaluations = 9 }}\n[sweep]\n{sweep}\n\
+             [[optimiser]]\nde = {{}}\n[[optimiser]]\nrandom = {{}}\n"
+        ));
+        let told = findings(&plan, &runs(&plan, |_| vec![]));
+        answer(&told, "Is it significant?").to_owned()
+    };
+    let poses = significance("random_poses = { count = 3, seed = 1 }\nbudget = [10, 20]");
+    assert!(poses.contains("Blocks are 3 instances"), "{poses}");
+    assert!(!poses.contains("independent"), "{poses}");
+    let terms = significance("terms = [2, 3]");
+    assert!(terms.contains("Settings of one task are not independent"), "{terms}");
+}
+
+/// What a sweep says of runs with the best motion known of another, one cost per run.
+fn sweep(settings: &str, cost: impl Fn(usize) -> f64) -> String {
+    let head = "seeds = 1\nbudget = { evaluations = 9 }\n";
+    let field = "[[optimiser]]\nscp = {}\n";
+    let one = plan(&format!("{head}{field}"));
+    let known = best_known(&one).remove(0);
+    let plan = plan(&format!("{head}[sweep]\n{settings}\n{field}"));
+    let with = |(i, run): (usize, Run)| Run {
+        cost: cost(i),
+        measures: known.measures.clone(),
+        x: known.x.clone(),
+        ..run
+    };
+    let runs: Vec<Run> =
+        runs(&plan, |_| vec![(1, 1.0)]).into_iter().enumerate().map(with).collect();
+    answer(&findings(&plan, &runs), "What does the sweep say?").to_owned()
+}
+
+#[test]
+fn a_sweep_compares_no_costs_of_different_weights() {
+    assert_eq!(
+        sweep("weight_base = [0.1, 0.2]", |i| 1.0 + i as f64),
+        "Over 2 settings, the best motions take 7.818 s and the residual stays below 0.001°."
+    );
+}
+
+#[test]
+fn a_sweep_tells_no_noise_apart() {
+    assert_eq!(
+        sweep("jerk_limit_deg_s3 = [80.0, 81.0]", |i| 0.5 + 1e-8 * i as f64),
+        "Over 2 settings, the best J is the same, 0.5000; the best motions take 7.818 s and the residual stays below 0.001°."
+    );
+}
+
+#[test]
+fn all_who_tie_have_the_best_motion() {
+    let plan = plan(
+        "seeds = 1\nbudget = { evaluations = 9 }\n[[optimiser]]\nlabel = 'A'\nscp = {}\n\
+         [[optimiser]]\nlabel = 'B'\nscp = { starts = 2 }\n[[optimiser]]\nlabel = 'C'\nscp = { starts = 3 }\n",
+    );
+    let mut runs = best_known(&plan);
+    runs[0].cost *= 1.0 + 1e-8;
+    runs[2].cost *= 1.0 + 1e-5;
+    let told = findings(&plan, &runs);
+    let good = answer(&told, "How good is it?");
+    assert!(good.starts_with("The best motion is by A and B alike: J 0.781849"), "{good}");
+}
+
+#[test]
+fn what_is_beaten_is_not_what_is_reached() {
+    let plan = plan(
+        "seeds = 1\nbudget = { evaluations = 9 }\n[sweep]\nterms = [2, 3]\n[[optimiser]]\nscp = {}\n",
+    );
+    let mut runs = best_known(&plan);
+    runs[1].cost *= 0.9;
+    let told = findings(&plan, &runs);
+    let good = answer(&told, "How good is it?");
+    let part = "of 2 instances; it was reached within 10⁻⁶ on 1, and beaten by more on 1.";
+    assert!(good.contains(part), "{good}");
+}
+
+fn points(setting: &[f64]) -> Vec<Point> {
+    let point = |&value: &f64| Point {
+        others: String::new(),
+        setting: value,
+        cost: 0.6 + 0.3 / value,
+        residual_deg: if value < 0.15 { 29.0 } else { 0.0 },
+        duration: 7.8 * (value / 80.0).powf(-1.0 / 3.0).max(0.6),
+    };
+    setting.iter().map(point).collect()
+}
+
+fn swept(setting: Swept, values: &[f64], bound: Option<f64>) -> Figure {
+    sweep_chart(&points(values), setting, bound).unwrap()
+}
+
+fn front() -> Figure {
+    let motions = [
+        (0.01, 2.8, 29.0, true),
+        (0.1, 2.8, 29.0, true),
+        (0.2, 5.0, 12.0, true),
+        (0.5, 7.0, 14.0, false),
+        (0.9, 7.8, 0.0, true),
+    ];
+    let trade = |(weight, duration, residual_deg, is_efficient)| Trade {
+        others: String::new(),
+        weight,
+        duration,
+        residual_deg,
+        is_efficient,
+    };
+    pareto(&motions.map(trade)).unwrap()
+}
+
+fn motion() -> Motion {
+    let time: Vec<f64> = (0..=200).map(|i| f64::from(i) * 0.05).collect();
+    let joint = |i: usize| JointMotion {
+        name: format!("joint{}", i + 1),
+        derivatives: time
+            .iter()
+            .map(|t| std::array::from_fn(|k| (t * TAU / 10.0 + (i + k) as f64).sin() * 1.2))
+            .collect(),
+    };
+    let base = |t: &f64| UnitQuaternion::from_euler_angles(0.1 * t.sin(), 0.03 * t, -0.02 * t);
+    Motion { joints: (0..7).map(joint).collect(), base: time.iter().map(base).collect(), time }
+}
+
+/// Every chart by name.
+fn charts() -> Vec<(&'static str, Figure)> {
+    let document = TaskFile::paper();
+    let (problem, _) = TaskFile::read(&document).unwrap().build(&document).unwrap();
+    let task = problem.task();
+    vec![
+        ("weight-sweep", swept(Swept::WeightBase, &[0.001, 0.01, 0.1, 0.2, 0.5, 0.9], None)),
+        ("jerk-sweep", swept(Swept::JerkLimit, &[20.0, 40.0, 80.0, 160.0, 320.0, 640.0], None)),
+        ("rate-sweep", swept(Swept::RateLimit, &[10.0, 20.0, 40.0, 60.0], None)),
+        ("terms-sweep", swept(Swept::Terms, &[1.0, 2.0, 3.0, 4.0, 8.0], Some(0.6))),
+        ("pareto", front()),
+        ("joint-angles", joint_angles(&motion())),
+        ("joint-derivatives", derivatives(&motion(), &task.limits)),
+        ("base-attitude", base_attitude(&motion(), task)),
+        ("snapshots", snapshots(&Motion::sample(&problem, &[0.1; 12], 8.0, 100), task)),
+    ]
+}
+
+#[test]
+fn charts_look_as_stored() {
+    check(&charts());
+}
+
+struct Quiet;
+
+impl Progress for Quiet {
+    fn finished(&self, _: &RunSpec, _: &Record) {}
+}
+
+/// The default experiment with a small budget, evaluated with so many lanes.
+fn default_findings(width: Width) -> Vec<Finding> {
+    let experiment = Experiment::read(&Experiment::embedded(), &registry()).unwrap();
+    let mut plan = experiment.with_budget(2000.try_into().unwrap()).plan().unwrap();
+    for instance in &mut plan.instances {
+        let subject = TaskSubject::of(instance).unwrap().with_width(width);
+        instance.subject = Arc::new(subject);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let folder = Folder::create(folder.path(), plan, &registry()).unwrap();
+    folder.run(Options::default(), &Watch::default(), &Quiet).unwrap();
+    findings(&folder.plan, &load(&folder.plan, &folder.store).unwrap())
+}
+
+/// The same whatever the number of lanes.
+#[test]
+fn findings_of_the_default_experiment() {
+    let told = default_findings(Width::widest());
+    assert_eq!(told, default_findings(Width::Scalar));
+    let lines = told.iter().map(|f| format!("{}\n{}\n", f.question, f.answer));
+    insta::assert_snapshot!(lines.collect::<Vec<_>>().join("\n"));
+}
