@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use driftless::experiment::{
-    self, Experiment, Instance, Plan, Progress, Record, Run, RunSpec, Store, best_runs, load,
+    self, Experiment, Instance, Plan, Progress, Record, Run, RunSpec, Store, load,
 };
 use driftless::input::Document;
 use driftless::optimiser::{Ending, Scp};
@@ -45,14 +45,14 @@ fn best_motions(plan: &Plan) -> Vec<Best> {
     let all: Vec<&RunSpec> = plan.runs.iter().collect();
     experiment::run(plan, &all, &store, 2, &Watch::default(), &Quiet).unwrap();
     let runs = load(plan, &store).unwrap();
-    let measure = |run: &Run, name| run.measure(plan.measure(name).unwrap());
+    let measure = |run: &Run, name| plan.results(&runs).measure(run, name);
     let best = |run: &Run| Best {
         cost: run.cost,
         residual_deg: measure(run, "residual_deg"),
         duration: measure(run, "t_f"),
         coefficients: run.x.clone(),
     };
-    let best: Vec<Best> = best_runs(plan, &runs).into_iter().map(best).collect();
+    let best: Vec<Best> = plan.results(&runs).best_runs().into_iter().map(best).collect();
     assert_eq!(best.len(), plan.instances.len());
     best
 }

@@ -30,9 +30,10 @@ impl<'a> Analysis<'a> {
     /// What the subjects of the plan show of their own, kind by kind.
     pub fn exhibits(&self) -> Exhibits {
         let mut exhibits = Exhibits::default();
+        let results = self.plan.results(self.runs);
         for (_, instances) in self.plan.by_kind() {
             if let [first, ..] = instances.as_slice() {
-                exhibits.extend(first.subject.exhibits(self.plan, self.runs));
+                exhibits.extend(first.subject.exhibits(&results));
             }
         }
         exhibits

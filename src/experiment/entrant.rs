@@ -7,8 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::instance::Instance;
-use super::subject::Unavailable;
+use super::subject::{Instance, Unavailable};
 use crate::input::{Document, InputError};
 use crate::optimiser::{Optimiser, Settings};
 use crate::search::{Oracle, Rng, Stop};
@@ -132,10 +131,9 @@ impl Entrant {
         })
     }
 
-    /// The formulation in which it searches an instance; empty where it has but one.
+    /// The formulation in which it searches an instance; empty where that has but one.
     pub fn space(&self, instance: &Instance) -> String {
-        let preferred = || instance.subject.spaces().into_iter().next().unwrap_or_default();
-        self.formulation.clone().unwrap_or_else(preferred)
+        instance.space(self.formulation.as_deref())
     }
 
     /// All that determines its runs beside formulation, seed and budget.

@@ -13,7 +13,7 @@ use toml::de::{DeArray, DeString, DeTable, DeValue};
 
 use super::budget::BudgetTable;
 use super::entrant::{Entrant, OutsideTable};
-use super::instance::Instance;
+use super::subject::Instance;
 use crate::input::{Document, InputError, nearest, optional_count};
 use crate::optimiser::Settings;
 

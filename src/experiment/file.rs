@@ -11,9 +11,9 @@ use toml::Spanned;
 use super::budget::BudgetTable;
 use super::entrant::Entrant;
 use super::field::{self, EntrantTable, Entry, WrittenEntrant};
-use super::instance::Instance;
 use super::kind::{Registry, Source};
 use super::stored::ProblemTable;
+use super::subject::Instance;
 use super::targets::TargetTable;
 use crate::input::{Document, InputError, count, keep, nearest};
 

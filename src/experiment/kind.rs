@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
-use super::instance::Instance;
+use super::subject::Instance;
 use crate::input::{Document, InputError};
 
 /// A kind of subjects.

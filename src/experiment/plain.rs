@@ -4,19 +4,26 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::subject::{Subject, Unavailable};
+use super::subject::{Instance, Subject, Unavailable};
 use crate::search::Problem;
 
 /// A problem of somebody's own in its own variables.
-pub(super) struct Plain {
+struct Plain {
     name: String,
     identity: Value,
     problem: Arc<dyn Problem>,
 }
 
-impl Plain {
-    pub(super) fn new(name: &str, identity: Value, problem: Arc<dyn Problem>) -> Self {
-        Self { name: name.to_owned(), identity, problem }
+impl Instance {
+    /// An instance on a problem of one's own, with the name as label. `identity` is all that determines its costs,
+    /// a version of its code included: see [`Subject::identity`].
+    pub fn of_problem(
+        name: &str,
+        identity: impl Into<Value>,
+        problem: impl Problem + 'static,
+    ) -> Self {
+        let (identity, problem) = (identity.into(), Arc::new(problem));
+        Self::new(name, Arc::new(Plain { name: name.to_owned(), identity, problem }))
     }
 }
 

@@ -8,10 +8,11 @@ use serde::Serialize;
 use super::entrant::Entrant;
 use super::field::{Entry, labelled};
 use super::file::Experiment;
-use super::instance::Instance;
+use super::run::Run;
 use super::schema::FORMAT;
-use super::subject::Quantity;
+use super::subject::{Instance, Results};
 use super::targets::TargetTable;
+use super::value::Quantity;
 use crate::digest::digest;
 use crate::input::{Document, InputError};
 
@@ -307,6 +308,17 @@ impl Plan {
     /// The facts of all subjects, each once.
     pub fn facts(&self) -> &[Quantity] {
         &self.facts
+    }
+
+    /// What its stored runs have found.
+    pub fn results<'a>(&'a self, runs: &'a [Run]) -> Results<'a> {
+        let optimisers = self.optimisers.iter();
+        Results {
+            instances: &self.instances,
+            optimisers: optimisers.map(|o| (&*o.label, o.formulation.as_deref())).collect(),
+            measures: &self.measures,
+            runs,
+        }
     }
 
     /// The instances by the kind of their subjects, in the order of the plan.

@@ -8,7 +8,7 @@ use polars::prelude::*;
 
 use super::plan::{Plan, RunSpec};
 use super::schema::{FORMAT, clocks, runs, traces};
-use super::subject::{Judgement, Quantity, Value, ValueKind};
+use super::value::{Judgement, Quantity, Value, ValueKind};
 use crate::search::{Oracle, Stop, TracePoint};
 
 /// How a run ended.

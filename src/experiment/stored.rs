@@ -4,10 +4,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::instance::Instance;
-use super::plan::Plan;
-use super::run::Run;
-use super::subject::{Quantity, Subject, Unavailable, Value};
+use super::subject::{Instance, Results, Subject, Unavailable};
+use super::value::{Quantity, Value};
 use crate::exhibit::{Exhibits, Finding};
 use crate::input::{Document, Finite, InputError};
 use crate::search::Problem;
@@ -155,7 +153,7 @@ impl Subject for Stored {
         &self.table.symbol
     }
 
-    fn exhibits(&self, _: &Plan, _: &[Run]) -> Exhibits {
+    fn exhibits(&self, _: &Results<'_>) -> Exhibits {
         let left_out = format!(
             "What subjects of the kind `{}` show of their own, if anything, is left out: this program does not know the \
              kind.",

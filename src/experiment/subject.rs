@@ -1,12 +1,13 @@
-//! What the runs of an instance minimise, whoever made it.
+//! What the runs of an experiment minimise, whoever made it: subjects, and the instances that they are.
 
+use std::any::Any;
+use std::fmt;
+use std::num::NonZeroU64;
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
-use super::instance::Instance;
-use super::plan::Plan;
-use super::run::Run;
+use super::caught::caught;
+use super::run::{Run, best_run};
+use super::value::{Judgement, Quantity, Value};
 use crate::exhibit::Exhibits;
 use crate::search::Problem;
 
@@ -112,15 +113,15 @@ pub trait Subject: Send + Sync {
         None
     }
 
-    /// What is shown of it and of all other instances of its kind beside what every experiment shows.
-    /// `runs` are the stored runs of the plan, on whatever subjects.
-    fn exhibits(&self, plan: &Plan, runs: &[Run]) -> Exhibits {
-        let _ = (plan, runs);
+    /// What is shown of it and of all other instances of its kind beside what every experiment shows. The results are
+    /// those of the whole experiment, on whatever subjects.
+    fn exhibits(&self, results: &Results<'_>) -> Exhibits {
+        let _ = results;
         Exhibits::default()
     }
 
     /// The subject itself, for exhibits that have to know more of their instances than this trait tells.
-    fn as_any(&self) -> Option<&dyn std::any::Any> {
+    fn as_any(&self) -> Option<&dyn Any> {
         None
     }
 }
@@ -137,127 +138,122 @@ impl Unavailable {
     }
 }
 
-/// What was found of a run's best point.
+/// One problem of an experiment.
+#[derive(Clone)]
+#[non_exhaustive]
+pub struct Instance {
+    /// What tells it from the others, such as `weight_base=0.5 terms=4`; empty where there is but one.
+    pub label: String,
+    /// What it shares with those it is summarised and drawn with; the label where there are none.
+    pub group: String,
+    /// The group as charts write it.
+    pub title: String,
+    /// The settings that a sweep has given it.
+    pub coordinates: Vec<Coordinate>,
+    /// What is minimised.
+    pub subject: Arc<dyn Subject>,
+    /// Evaluations that each run may spend, instead of the experiment's budget.
+    pub budget: Option<NonZeroU64>,
+    /// Costs that runs are asked to reach.
+    pub targets: Vec<f64>,
+}
+
+/// A setting and its value on one instance.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judgement {
-    /// Its cost.
-    pub cost: f64,
-    /// One value for each measure of the subject.
-    pub measures: Vec<Value>,
+pub struct Coordinate {
+    /// The setting.
+    pub setting: String,
+    /// Its value.
+    pub value: Value,
 }
 
-/// Something to know of a subject or of a point: a column of the table `runs`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Quantity {
-    /// Name of its column, such as `t_f`.
-    pub name: String,
-    /// What its values are.
-    pub kind: ValueKind,
-    /// What it means, with its unit.
-    #[serde(default)]
-    pub meaning: String,
-    /// Its column in the tables of a report, with its unit, such as `t_f [s]`; where there is none it is only
-    /// stored.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub heading: Option<String>,
-    /// What to call it among what there is to know of how runs were made, if it belongs there.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub provenance: Option<String>,
+impl fmt::Debug for Instance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = f.debug_struct("Instance");
+        shown.field("label", &self.label).field("subject", &self.subject.name());
+        shown.finish_non_exhaustive()
+    }
 }
 
-impl Quantity {
-    /// A quantity that is stored and not shown.
-    pub fn new(name: &str, kind: ValueKind, meaning: &str) -> Self {
+impl Instance {
+    /// An instance on a subject.
+    pub fn new(label: impl Into<String>, subject: Arc<dyn Subject>) -> Self {
+        let label = label.into();
         Self {
-            name: name.to_owned(),
-            kind,
-            meaning: meaning.to_owned(),
-            heading: None,
-            provenance: None,
+            group: label.clone(),
+            title: label.clone(),
+            label,
+            coordinates: Vec::new(),
+            subject,
+            budget: None,
+            targets: Vec::new(),
         }
     }
 
-    /// The same, shown in tables under this heading.
+    /// With costs that runs are asked to reach.
     #[must_use]
-    pub fn shown(self, heading: &str) -> Self {
-        Self { heading: Some(heading.to_owned()), ..self }
+    pub fn with_targets(self, targets: impl Into<Vec<f64>>) -> Self {
+        Self { targets: targets.into(), ..self }
     }
 
-    /// The same, shown under this name where a report says how runs were made.
-    #[must_use]
-    pub fn telling_provenance(self, name: &str) -> Self {
-        Self { provenance: Some(name.to_owned()), ..self }
+    /// The cost in the middle of the box; NaN where the problem panics there.
+    pub(crate) fn start_cost(&self) -> f64 {
+        caught(|| self.subject.start_cost()).unwrap_or(f64::NAN)
     }
-}
 
-/// What the values of a quantity are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ValueKind {
-    /// Texts.
-    Text,
-    /// Whole numbers from 0.
-    Count,
-    /// Numbers.
-    Real,
-    /// Lists of numbers.
-    Reals,
-}
+    /// The formulation in which an optimiser searches it that asks for one, or for none; empty where it has but one.
+    pub fn space(&self, asked: Option<&str>) -> String {
+        let preferred = || self.subject.spaces().into_iter().next().unwrap_or_default();
+        asked.map_or_else(preferred, str::to_owned)
+    }
 
-/// A value of a quantity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Value {
-    /// Not known, or of no meaning here.
-    None,
-    /// A text.
-    Text(String),
-    /// A whole number from 0.
-    Count(u64),
-    /// A number.
-    Real(f64),
-    /// A list of numbers.
-    Reals(Vec<f64>),
-}
-
-impl Value {
-    /// The number, if it is one.
-    pub fn real(&self) -> Option<f64> {
-        match self {
-            Self::Real(value) => Some(*value),
-            Self::Count(value) => Some(*value as f64),
-            _ => None,
-        }
+    /// The value of a setting of the sweep.
+    pub fn coordinate(&self, setting: &str) -> Option<&Value> {
+        let found = self.coordinates.iter().find(|coordinate| coordinate.setting == setting);
+        found.map(|coordinate| &coordinate.value)
     }
 }
 
-impl From<f64> for Value {
-    fn from(value: f64) -> Self {
-        Self::Real(value)
-    }
+/// What an experiment has found so far.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Results<'a> {
+    /// The instances of the plan.
+    pub instances: &'a [Instance],
+    /// The labels of its optimisers, and the formulations that they ask for.
+    pub optimisers: Vec<(&'a str, Option<&'a str>)>,
+    /// The measures of all subjects, each once.
+    pub measures: &'a [Quantity],
+    /// The stored runs.
+    pub runs: &'a [Run],
 }
 
-impl From<Option<f64>> for Value {
-    fn from(value: Option<f64>) -> Self {
-        value.map_or(Self::None, Self::Real)
+impl<'a> Results<'a> {
+    /// A run's instance.
+    pub fn instance(&self, run: &Run) -> &'a Instance {
+        &self.instances[run.instance]
     }
-}
 
-impl From<u64> for Value {
-    fn from(value: u64) -> Self {
-        Self::Count(value)
+    /// The label of a run's optimiser.
+    pub fn label(&self, run: &Run) -> &'a str {
+        self.optimisers[run.optimiser].0
     }
-}
 
-impl From<&str> for Value {
-    fn from(value: &str) -> Self {
-        Self::Text(value.to_owned())
+    /// The formulation in which a run searched; empty where its subject has but one.
+    pub fn space(&self, run: &Run) -> String {
+        self.instance(run).space(self.optimisers[run.optimiser].1)
     }
-}
 
-impl From<Vec<f64>> for Value {
-    fn from(value: Vec<f64>) -> Self {
-        Self::Reals(value)
+    /// A measure of a run, by its name; NaN where there is none.
+    pub fn measure(&self, run: &Run, name: &str) -> f64 {
+        let place = self.measures.iter().position(|measure| measure.name == name);
+        place.map_or(f64::NAN, |place| run.measure(place))
+    }
+
+    /// The best run of every instance that has one, in the order of the plan.
+    pub fn best_runs(&self) -> Vec<&'a Run> {
+        let mut by_instance: Vec<Vec<&Run>> = vec![Vec::new(); self.instances.len()];
+        self.runs.iter().for_each(|run| by_instance[run.instance].push(run));
+        by_instance.into_iter().filter_map(|runs| best_run(runs.into_iter())).collect()
     }
 }

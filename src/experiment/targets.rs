@@ -7,7 +7,7 @@ use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::instance::Instance;
+use super::subject::Instance;
 use crate::input::{Document, Finite, InputError, nearest};
 
 /// Targets as a file has them: the same for all instances, or by the instance's label.

@@ -8,6 +8,10 @@ mod export;
 mod fitness;
 mod formulation;
 #[cfg(feature = "harness")]
+mod interface;
+#[cfg(feature = "harness")]
+mod keys;
+#[cfg(feature = "harness")]
 mod kind;
 mod measure;
 mod motion;

@@ -1,21 +1,13 @@
 //! The reorientation task as a subject of experiments.
 
-use std::any::Any;
 use std::sync::Arc;
 
-use serde_json::json;
-
-use super::best_known::BestKnown;
-use super::exhibits;
-use super::fitness::{Assessment, Reorientation};
+use super::fitness::Reorientation;
 use super::formulation::{Formulated, Formulation};
 use super::settings::Boxes;
-use crate::exhibit::Exhibits;
-use crate::experiment::{
-    Instance, Judgement, Plan, Quantity, Run, Subject, Unavailable, Value, ValueKind,
-};
+use crate::experiment::{Instance, Unavailable};
 use crate::lanes::Width;
-use crate::search::Problem;
+use crate::search::Problem as _;
 
 /// The name of the kind.
 pub(super) const KIND: &str = "reorientation";
@@ -34,8 +26,8 @@ pub(super) const DURATION: &str = "t_f";
 /// The task within its boxes.
 #[derive(Debug)]
 pub struct TaskSubject {
-    problem: Arc<Reorientation>,
-    boxes: Boxes,
+    pub(super) problem: Arc<Reorientation>,
+    pub(super) boxes: Boxes,
 }
 
 impl TaskSubject {
@@ -60,7 +52,7 @@ impl TaskSubject {
         Self { problem: Arc::new(self.problem.with_width(width)), boxes: self.boxes.clone() }
     }
 
-    fn formulated(&self, space: &str) -> Result<Formulated, Unavailable> {
+    pub(super) fn formulated(&self, space: &str) -> Result<Formulated, Unavailable> {
         let formulation = Formulation::named(Some(space))
             .ok_or_else(|| Unavailable::new(format!("the task has no formulation `{space}`")))?;
         Ok(Formulated::new(formulation, self.problem.clone(), &self.boxes))
@@ -71,140 +63,4 @@ impl TaskSubject {
         let formulated = self.formulated(space).ok()?;
         (x.len() == formulated.bounds().len()).then(|| formulated.decode(x).0)
     }
-}
-
-impl Subject for TaskSubject {
-    fn kind(&self) -> &'static str {
-        KIND
-    }
-
-    fn name(&self) -> &'static str {
-        KIND
-    }
-
-    fn identity(&self) -> serde_json::Value {
-        let (accuracy, boxes) = (self.problem.accuracy(), &self.boxes);
-        json!({
-            "task": &**self.problem.task(),
-            "family": { "name": "sine-polynomial", "terms": self.problem.family().terms() },
-            "accuracy": {
-                "attitude_steps": accuracy.attitude_steps,
-                "peak_intervals": accuracy.peak_intervals,
-            },
-            "box": {
-                "coefficient": boxes.coefficient,
-                "duration": boxes.duration,
-                "alpha": boxes.alpha,
-            },
-        })
-    }
-
-    fn spaces(&self) -> Vec<String> {
-        SPACES.map(str::to_owned).to_vec()
-    }
-
-    fn problem(&self, space: &str) -> Result<Arc<dyn Problem>, Unavailable> {
-        Ok(Arc::new(self.formulated(space)?))
-    }
-
-    /// Of the paper's variables, free coefficients and duration.
-    fn dimension(&self) -> usize {
-        self.problem.family().dimension() + 1
-    }
-
-    fn known_cost(&self) -> Option<f64> {
-        BestKnown::of(&self.problem).map(|known| known.j)
-    }
-
-    fn facts(&self) -> Vec<(Quantity, Value)> {
-        let task = self.problem.task();
-        let limit = |order: usize| Value::from(task.uniform_limit_deg(order));
-        let shown = |name: &str, kind, meaning| Quantity::new(name, kind, meaning).shown(name);
-        let lanes = "how many places of a path the processor evaluated at once; 4 and 8 give the same bits, 1 may give \
-            others in the last digits";
-        vec![
-            (
-                Quantity::new("robot", ValueKind::Text, "name of the robot"),
-                task.robot.name.as_str().into(),
-            ),
-            (shown("weight_base", ValueKind::Real, "`K_b`"), task.base_weight.into()),
-            (
-                shown(
-                    "rate_limit_deg_s",
-                    ValueKind::Real,
-                    "limit of all joints [°/s]; null where joints differ",
-                ),
-                limit(0),
-            ),
-            (shown("acceleration_limit_deg_s2", ValueKind::Real, "the same [°/s²]"), limit(1)),
-            (shown("jerk_limit_deg_s3", ValueKind::Real, "the same [°/s³]"), limit(2)),
-            (
-                shown("terms", ValueKind::Count, "free coefficients per joint"),
-                (self.problem.family().terms() as u64).into(),
-            ),
-            (
-                Quantity::new("lanes", ValueKind::Count, lanes)
-                    .telling_provenance("Places of a path evaluated at once"),
-                (self.problem.width().lanes() as u64).into(),
-            ),
-        ]
-    }
-
-    fn measures(&self) -> Vec<Quantity> {
-        vec![
-            Quantity::new(RESIDUAL, ValueKind::Real, "the base's error [°]").shown("residual [°]"),
-            Quantity::new(DURATION, ValueKind::Real, "duration [s]").shown("t_f [s]"),
-            Quantity::new("penalty", ValueKind::Real, "penalty in `certified_j`"),
-            Quantity::new(
-                "coefficients",
-                ValueKind::Reals,
-                "the motion's bump coefficients, joint by joint",
-            ),
-        ]
-    }
-
-    fn judge(&self, space: &str, x: &[f64]) -> Result<Option<Judgement>, Unavailable> {
-        let (coefficients, motion) = self.formulated(space)?.certify(x);
-        Ok(Some(Judgement { cost: motion.cost, measures: measured(&motion, coefficients) }))
-    }
-
-    fn cost_symbol(&self) -> &'static str {
-        "J"
-    }
-
-    fn cost_text(&self, cost: f64) -> String {
-        format!("{cost:.6}")
-    }
-
-    fn resolution(&self, lowest: f64) -> f64 {
-        SAME_MOTION * lowest.abs()
-    }
-
-    fn dependence(&self, instances: &[&Instance]) -> Option<&'static str> {
-        instances.windows(2).any(|pair| pair[0].group != pair[1].group).then_some(
-            "Settings of one task are not independent tasks, so p-values are smaller than they should be.",
-        )
-    }
-
-    fn warning(&self) -> Option<String> {
-        self.problem.task().robot.warning()
-    }
-
-    fn exhibits(&self, plan: &Plan, runs: &[Run]) -> Exhibits {
-        exhibits::exhibits(plan, runs)
-    }
-
-    fn as_any(&self) -> Option<&dyn Any> {
-        Some(self)
-    }
-}
-
-/// The values of the measures.
-fn measured(motion: &Assessment, coefficients: Vec<f64>) -> Vec<Value> {
-    vec![
-        motion.residual().to_degrees().into(),
-        motion.duration.into(),
-        motion.penalty().into(),
-        coefficients.into(),
-    ]
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toml::Spanned;
 
 use super::best_known::BestKnown;
-use super::kind::{Evaluations, Sweep, TaskKeys};
+use super::keys::{Evaluations, Sweep, TaskKeys};
 use super::settings::TrajectoryTable;
 use super::subject::TaskSubject;
 use super::symbols::K_B;

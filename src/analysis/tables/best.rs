@@ -5,11 +5,12 @@ use polars::prelude::*;
 use crate::analysis::grouped::Analysis;
 use crate::analysis::summary::measure_columns;
 use crate::exhibit::Table;
-use crate::experiment::{Plan, Quantity, Run, Value, ValueKind, best_runs};
+use crate::experiment::{Plan, Quantity, Run, Value, ValueKind};
 
 /// One line per instance with a run that found something: its facts, who found it, its cost and its measures.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
-    let (plan, best) = (analysis.plan, best_runs(analysis.plan, analysis.runs));
+    let plan = analysis.plan;
+    let best = plan.results(analysis.runs).best_runs();
     let cost = format!("best {}", plan.cost_symbol());
     let label = |run: &&Run| plan.instances[run.instance].label.as_str();
     let mut frame = df!("instance" => best.iter().map(label).collect::<Vec<_>>())?;

@@ -1,6 +1,6 @@
 //! The best motion of every instance that is a task.
 
-use crate::experiment::{Instance, Plan, Run, best_runs};
+use crate::experiment::{Instance, Results, Run};
 use crate::reorientation::fitness::Reorientation;
 use crate::reorientation::motion::Motion;
 use crate::reorientation::subject::{DURATION, RESIDUAL, TaskSubject};
@@ -28,24 +28,19 @@ impl BestMotion<'_> {
 }
 
 /// The best motion of every instance that has one, in the order of the plan.
-pub(in crate::reorientation) fn best_motions<'a>(
-    plan: &'a Plan,
-    runs: &'a [Run],
-) -> Vec<BestMotion<'a>> {
-    let (residual, duration) = (plan.measure(RESIDUAL), plan.measure(DURATION));
-    let measure = |run: &Run, place: Option<usize>| place.map_or(f64::NAN, |p| run.measure(p));
+pub(in crate::reorientation) fn best_motions<'a>(results: &Results<'a>) -> Vec<BestMotion<'a>> {
     let motion = |run: &'a Run| {
-        let (instance, entrant) = (&plan.instances[run.instance], &plan.optimisers[run.optimiser]);
+        let instance = results.instance(run);
         let subject = TaskSubject::of(instance)?;
         Some(BestMotion {
             run,
             instance,
-            optimiser: &entrant.label,
+            optimiser: results.label(run),
             problem: subject.reorientation(),
-            coefficients: subject.coefficients(&entrant.space(instance), &run.x)?,
-            residual_deg: measure(run, residual),
-            duration: measure(run, duration),
+            coefficients: subject.coefficients(&results.space(run), &run.x)?,
+            residual_deg: results.measure(run, RESIDUAL),
+            duration: results.measure(run, DURATION),
         })
     };
-    best_runs(plan, runs).into_iter().filter_map(motion).collect()
+    results.best_runs().into_iter().filter_map(motion).collect()
 }

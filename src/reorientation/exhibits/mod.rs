@@ -24,7 +24,7 @@ pub use motion_charts::{SAMPLES, write_motion_figures};
 pub(super) use motion_table::motion_table;
 
 use crate::exhibit::Exhibits;
-use crate::experiment::{Plan, Run};
+use crate::experiment::Results;
 use crate::reorientation::best_known::BestKnown;
 use best::{BestMotion, best_motions};
 
@@ -32,12 +32,12 @@ use best::{BestMotion, best_motions};
 const MOST_TOLD: usize = 24;
 
 /// All that there is to show of the tasks of a plan.
-pub(super) fn exhibits(plan: &Plan, runs: &[Run]) -> Exhibits {
-    let best = best_motions(plan, runs);
+pub(super) fn exhibits(results: &Results<'_>) -> Exhibits {
+    let best = best_motions(results);
     let mut exhibits = Exhibits {
         sweep: sweep_finding::finding(&best),
-        quality: quality::finding(plan, runs, &best),
-        findings: motion_finding::finding(plan, &best).into_iter().collect(),
+        quality: quality::finding(results, &best),
+        findings: motion_finding::finding(results, &best).into_iter().collect(),
         lines: lines(&best),
         leading_charts: charts::charts(&best),
         scenes: scene::scenes(&best),
@@ -48,7 +48,7 @@ pub(super) fn exhibits(plan: &Plan, runs: &[Run]) -> Exhibits {
     };
     exhibits.tables.extend(pareto::table(&best));
     // Costs of different instances do not compare, so of several there is no best of all to draw.
-    if let (1, [motion]) = (plan.instances.len(), &best[..]) {
+    if let (1, [motion]) = (results.instances.len(), &best[..]) {
         let sampled = motion.sample(motion_charts::SAMPLES);
         exhibits.charts.extend(motion_charts::motion_charts(&sampled, motion.problem.task()));
         exhibits.chart_tables.extend(motion_table(&sampled).ok());

@@ -4,7 +4,7 @@ use super::best::BestMotion;
 use super::words::off_the_goal;
 use crate::exhibit::Finding;
 use crate::exhibit::words::{list, number, percent, plural};
-use crate::experiment::Plan;
+use crate::experiment::Results;
 use crate::reorientation::subject::TaskSubject;
 
 const QUESTION: &str = "What does the motion look like?";
@@ -18,8 +18,8 @@ const AT_LIMIT: f64 = 1e-3;
 const ORDERS: [&str; 3] = ["rates", "accelerations", "jerks"];
 
 /// Of the only task's best motion, or of the best motions of all tasks; none where there are no motions.
-pub(super) fn finding(plan: &Plan, best: &[BestMotion<'_>]) -> Option<Finding> {
-    let tasks = plan.instances.iter().filter_map(TaskSubject::of).count();
+pub(super) fn finding(results: &Results<'_>, best: &[BestMotion<'_>]) -> Option<Finding> {
+    let tasks = results.instances.iter().filter_map(TaskSubject::of).count();
     let answer = match best {
         [] => return None,
         [motion] if tasks == 1 => format!("{} {}", way(motion), binding(&ratios(motion))),

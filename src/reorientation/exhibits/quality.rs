@@ -6,7 +6,7 @@ use super::best::BestMotion;
 use super::words::off_the_goal;
 use crate::exhibit::Finding;
 use crate::exhibit::words::{list, number, plural, span};
-use crate::experiment::{Plan, Run};
+use crate::experiment::{Results, Run};
 use crate::reorientation::best_known::BestKnown;
 use crate::reorientation::subject::{SAME_MOTION, TaskSubject};
 
@@ -16,23 +16,23 @@ const AT_GOAL_DEG: f64 = 0.01;
 const MOST_NAMES: usize = 5;
 
 /// Of the only task's best motion, or of the best motions of all tasks; none where there are no motions.
-pub(super) fn finding(plan: &Plan, runs: &[Run], best: &[BestMotion<'_>]) -> Option<Finding> {
-    let tasks = plan.instances.iter().filter_map(TaskSubject::of).count();
+pub(super) fn finding(results: &Results<'_>, best: &[BestMotion<'_>]) -> Option<Finding> {
+    let tasks = results.instances.iter().filter_map(TaskSubject::of).count();
     let answer = match best {
         [] => return None,
-        [only] if tasks == 1 => one_task(plan, runs, only),
+        [only] if tasks == 1 => one_task(results, only),
         best => many_tasks(best, tasks),
     };
     Some(Finding::new("How good is it?", answer))
 }
 
-fn one_task(plan: &Plan, runs: &[Run], motion: &BestMotion<'_>) -> String {
+fn one_task(results: &Results<'_>, motion: &BestMotion<'_>) -> String {
     let run = motion.run;
     let known = BestKnown::of(motion.problem)
         .map_or_else(|| "no best is known".to_owned(), |known| known.compared_with(run.cost));
     format!(
         "The best motion is by {}: J {:.6} ({known}), {} s, and the base ends {}.",
-        winners(plan, runs, run),
+        winners(results, run),
         run.cost,
         number(motion.duration),
         off_the_goal(motion.residual_deg)
@@ -40,11 +40,11 @@ fn one_task(plan: &Plan, runs: &[Run], motion: &BestMotion<'_>) -> String {
 }
 
 /// Whose runs end as low as the lowest of its instance.
-fn winners(plan: &Plan, runs: &[Run], lowest: &Run) -> String {
+fn winners(results: &Results<'_>, lowest: &Run) -> String {
     let is_level = |run: &&Run| run.cost - lowest.cost <= SAME_MOTION * lowest.cost.abs();
-    let on_instance = runs.iter().filter(|run| run.instance == lowest.instance);
+    let on_instance = results.runs.iter().filter(|run| run.instance == lowest.instance);
     let level: BTreeSet<usize> = on_instance.filter(is_level).map(|run| run.optimiser).collect();
-    let names: Vec<&str> = level.iter().map(|&o| &*plan.optimisers[o].label).collect();
+    let names: Vec<&str> = level.iter().map(|&o| results.optimisers[o].0).collect();
     match names.len() {
         1 => names[0].to_owned(),
         n if n > MOST_NAMES => format!("{n} optimisers alike"),

@@ -13,16 +13,24 @@ use super::snapshots::snapshots;
 use super::sweeps::{Point, Swept, sweep as sweep_chart};
 use crate::analysis::handmade::{answer, findings, plan_on, runs};
 use crate::exhibit::Finding;
-use crate::experiment::{Experiment, Folder, Options, Plan, Progress, Record, Run, RunSpec, load};
+use crate::experiment::{
+    Experiment, Folder, Options, Plan, Progress, Record, Registry, Run, RunSpec, load,
+};
 use crate::figure::Figure;
 use crate::figure::stored_pictures::check;
+use crate::functions::Functions;
 use crate::lanes::Width;
-use crate::registry::registry;
 use crate::reorientation::best_known::BestKnown;
+use crate::reorientation::kind::ReorientationTask;
 use crate::reorientation::motion::{JointMotion, Motion};
 use crate::reorientation::settings::TaskFile;
 use crate::reorientation::subject::{DURATION, RESIDUAL, TaskSubject};
 use crate::search::Watch;
+
+/// What the tests' experiments are on.
+fn registry() -> Registry {
+    Registry::new().with(Arc::new(ReorientationTask)).with(Arc::new(Functions))
+}
 
 /// The plan of an experiment file without its name.
 fn plan(text: &str) -> Plan {

@@ -18,7 +18,7 @@ pub fn write_motions(
 ) -> Result<usize, ExportError> {
     let mut taken = HashSet::new();
     write_folder(folder, |folder| {
-        for best in best_motions(plan, runs) {
+        for best in best_motions(&plan.results(runs)) {
             let label = &best.instance.label;
             let label = if label.is_empty() { "best" } else { label };
             let name = unlike(&file_name(label), &mut taken);
