@@ -45,6 +45,7 @@
 #[cfg(feature = "harness")]
 pub mod analysis;
 pub mod attitude;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod digest;
 #[cfg(feature = "harness")]

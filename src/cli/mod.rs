@@ -43,7 +43,7 @@ use std::process::ExitCode;
 use std::sync::{Arc, LazyLock};
 
 use clap::{Parser, Subcommand};
-use miette::{Diagnostic, MietteHandlerOpts, Report};
+use miette::{Diagnostic, MietteHandlerOpts, NamedSource, Report, SourceSpan};
 use thiserror::Error;
 
 use crate::input::{Document, InputError};
@@ -94,10 +94,20 @@ enum Verb {
 /// Why a command did not do what it was asked to.
 #[derive(Debug, Error, Diagnostic)]
 enum CliError {
-    /// A file that cannot be used.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Input(#[from] InputError),
+    /// A file that cannot be read.
+    #[error("cannot read {}", .path.display())]
+    Unreadable { path: PathBuf, source: io::Error },
+    /// A file that is not what was expected.
+    #[error("{message}")]
+    Input {
+        message: String,
+        #[source_code]
+        text: NamedSource<String>,
+        #[label("here")]
+        span: SourceSpan,
+        #[help]
+        help: Option<String>,
+    },
     /// An argument that cannot be used.
     #[error("{message}")]
     Usage {
@@ -125,9 +135,12 @@ enum CliError {
     Run(#[from] crate::experiment::RunError),
     /// It is not known which part of an experiment is meant.
     #[cfg(feature = "harness")]
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Shard(#[from] crate::experiment::ShardError),
+    #[error("{error}")]
+    Shard {
+        error: crate::experiment::ShardError,
+        #[help]
+        help: &'static str,
+    },
     /// A stored result could not be read.
     #[cfg(feature = "harness")]
     #[error(transparent)]
@@ -157,7 +170,7 @@ impl From<crate::experiment::FolderError> for CliError {
     fn from(error: crate::experiment::FolderError) -> Self {
         use crate::experiment::FolderError;
         match error {
-            FolderError::Input(error) => Self::Input(error),
+            FolderError::Input(error) => error.into(),
             FolderError::Store(error) => Self::Store(error),
             FolderError::File(error) => Self::File(error),
             FolderError::NoResults(_) => {
@@ -172,6 +185,30 @@ impl From<crate::experiment::FolderError> for CliError {
     }
 }
 
+impl From<InputError> for CliError {
+    fn from(error: InputError) -> Self {
+        match error {
+            InputError::Read { path, source } => Self::Unreadable { path, source },
+            InputError::Content(mistake) => {
+                let name = mistake.path.display().to_string();
+                Self::Input {
+                    message: mistake.message,
+                    text: NamedSource::new(name, mistake.text).with_language("TOML"),
+                    span: mistake.span.into(),
+                    help: mistake.help,
+                }
+            }
+        }
+    }
+}
+
+#[cfg(feature = "harness")]
+impl From<crate::experiment::ShardError> for CliError {
+    fn from(error: crate::experiment::ShardError) -> Self {
+        Self::Shard { help: error.help(), error }
+    }
+}
+
 impl From<toml::ser::Error> for CliError {
     fn from(error: toml::ser::Error) -> Self {
         Self::Resolved(error.to_string())
@@ -181,9 +218,9 @@ impl From<toml::ser::Error> for CliError {
 impl CliError {
     fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Input(_) | Self::Usage { .. } => ExitCode::from(2),
+            Self::Unreadable { .. } | Self::Input { .. } | Self::Usage { .. } => ExitCode::from(2),
             #[cfg(feature = "harness")]
-            Self::Shard(_) => ExitCode::from(2),
+            Self::Shard { .. } => ExitCode::from(2),
             _ => ExitCode::from(1),
         }
     }

@@ -3,8 +3,6 @@
 use std::fmt;
 use std::str::FromStr;
 
-use miette::Diagnostic;
-
 /// What Slurm sets in the tasks of an array: the task's number, the least number, the step from one
 /// number to the next, and how many tasks there are.
 const SLURM: [&str; 4] = [
@@ -119,23 +117,20 @@ fn whole(
 }
 
 /// Why it is not known which shard is meant.
-#[derive(Debug, PartialEq, Eq, thiserror::Error, Diagnostic)]
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ShardError {
     /// No variable is set.
     #[error("no scheduler tells which shard this is: none of {} is set", NUMBERS.join(", "))]
-    #[diagnostic(help("write --shard I/N, such as --shard 0/4 for the first of four"))]
     NoScheduler,
     /// The scheduler does not tell how many tasks there are.
     #[error("{0} tells which shard this is, but not of how many")]
-    #[diagnostic(help("write --shard /N, such as --shard /4 in each of four tasks"))]
     NoCount(&'static str),
     /// One of several variables is missing.
     #[error("{} tells which shard this is, but {} is not set", SLURM[0], .0)]
-    #[diagnostic(help("write --shard /N, such as --shard /4 in an array numbered 0-3"))]
     NotSet(&'static str),
     /// A variable holds something else than a number.
     #[error("{name} is `{value}`, expected a whole number from 0")]
-    #[diagnostic(help("write --shard I/N, such as --shard 0/4 for the first of four"))]
     NotANumber {
         /// The variable.
         name: &'static str,
@@ -144,7 +139,6 @@ pub enum ShardError {
     },
     /// The task's number is not below the count given.
     #[error("{name} is {index}, but shards of {count} are numbered from 0 to {}", .count - 1)]
-    #[diagnostic(help("number the tasks from 0, such as 0-3 with --shard /4"))]
     OutOfRange {
         /// The variable.
         name: &'static str,
@@ -155,10 +149,6 @@ pub enum ShardError {
     },
     /// The task's number is none that an array without gaps has.
     #[error("{} is {id}, which is none of {count} numbers from {min} in steps of {step}", SLURM[0])]
-    #[diagnostic(help(
-        "where an array has gaps write --shard /N, such as --shard /4 in tasks of an array \
-         numbered 0-3"
-    ))]
     Gap {
         /// The task's number.
         id: usize,
@@ -169,6 +159,24 @@ pub enum ShardError {
         /// How many tasks there are.
         count: usize,
     },
+}
+
+impl ShardError {
+    /// What to write instead.
+    pub fn help(&self) -> &'static str {
+        match self {
+            Self::NoScheduler | Self::NotANumber { .. } => {
+                "write --shard I/N, such as --shard 0/4 for the first of four"
+            }
+            Self::NoCount(_) => "write --shard /N, such as --shard /4 in each of four tasks",
+            Self::NotSet(_) => "write --shard /N, such as --shard /4 in an array numbered 0-3",
+            Self::OutOfRange { .. } => "number the tasks from 0, such as 0-3 with --shard /4",
+            Self::Gap { .. } => {
+                "where an array has gaps write --shard /N, such as --shard /4 in tasks of an array \
+                 numbered 0-3"
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -6,9 +6,7 @@ mod checked;
 use std::fmt::Display;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 use toml::Spanned;
@@ -20,7 +18,8 @@ pub use checked::{
 };
 
 /// A file that cannot be used, with the place in it where one is known.
-#[derive(Debug, Error, Diagnostic)]
+#[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum InputError {
     /// The file could not be read at all.
     #[error("cannot read {}", .path.display())]
@@ -31,20 +30,38 @@ pub enum InputError {
         source: std::io::Error,
     },
     /// The text is not what was expected.
-    #[error("{message}")]
-    Content {
-        /// What is wrong and what was expected.
-        message: String,
-        /// The file's name and text.
-        #[source_code]
-        text: Arc<NamedSource<String>>,
-        /// Where.
-        #[label("here")]
-        span: SourceSpan,
-        /// The nearest known name, where a name is unknown.
-        #[help]
-        help: Option<String>,
-    },
+    #[error("{}", .0.shown())]
+    Content(Box<Mistake>),
+}
+
+/// What is wrong with a text, and where.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Mistake {
+    /// What is wrong and what was expected.
+    pub message: String,
+    /// The text's file.
+    pub path: PathBuf,
+    /// The text.
+    pub text: String,
+    /// The bytes of the text that are wrong; empty where no place is known.
+    pub span: Range<usize>,
+    /// The nearest known name, where a name is unknown.
+    pub help: Option<String>,
+}
+
+impl Mistake {
+    /// In one line: file, line and column, message.
+    fn shown(&self) -> String {
+        let before = self.text.get(..self.span.start).filter(|_| !self.span.is_empty());
+        let place = before.map_or_else(String::new, |before| {
+            let line = before.matches('\n').count() + 1;
+            let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+            format!("{line}:{column}: ")
+        });
+        let help = self.help.as_ref().map_or_else(String::new, |help| format!("; {help}"));
+        format!("{}: {place}{}{help}", self.path.display(), self.message)
+    }
 }
 
 /// A TOML text and the name to show for it.
@@ -133,13 +150,13 @@ impl Document {
         // A long table is pointed at by its first line only.
         let marked = self.text.get(span.clone()).unwrap_or_default();
         let first_line = marked.lines().next().map_or(0, str::len);
-        let name = self.path.display().to_string();
-        InputError::Content {
+        InputError::Content(Box::new(Mistake {
             message: message.to_string(),
-            text: Arc::new(NamedSource::new(name, self.text.clone()).with_language("TOML")),
-            span: (span.start, first_line).into(),
+            path: self.path.clone(),
+            text: self.text.clone(),
+            span: span.start..span.start + first_line,
             help,
-        }
+        }))
     }
 
     /// A path that stands in this file, seen from the file's own folder.
