@@ -18,6 +18,7 @@ fn evaluation(c: &mut Criterion) {
         TaskFile::read(&document).and_then(|file| file.build(&document)).expect("the default task");
     let formulated = |formulation, width| {
         Formulated::new(formulation, Arc::new(problem.with_width(width)), &boxes)
+            .expect("sound boxes")
     };
     let within = |problem: &Formulated, share: f64| -> Vec<f64> {
         let mut rng = Rng::new(1);
@@ -40,7 +41,7 @@ fn evaluation(c: &mut Criterion) {
     for width in Width::available() {
         let problem = formulated(Formulation::TimeFree, width);
         let x = within(&problem, 0.5);
-        let parts = problem.linearise(&x);
+        let parts = problem.linearise(&x).expect("the task never fails");
         let multipliers = Multipliers {
             residual: DVector::from_element(3, 1.0),
             pieces: parts.pieces.iter().take(8).map(|piece| (piece.place, 0.1)).collect(),

@@ -12,7 +12,7 @@ use nalgebra::dvector;
 fn paper(terms: usize) -> Formulated {
     let document = Document::embedded("task", &format!("[trajectory]\nterms = {terms}\n"));
     let (problem, boxes) = TaskFile::read(&document).unwrap().build(&document).unwrap();
-    Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes)
+    Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes).unwrap()
 }
 
 /// Differences of sixth order, extrapolated from three central ones.
@@ -25,11 +25,11 @@ fn difference(value: impl Fn(f64) -> f64) -> f64 {
 
 fn check(x: &[f64]) {
     let problem = paper(x.len() / 6);
-    let here = problem.linearise(x);
+    let here = problem.linearise(x).unwrap();
     let shifted = |j: usize, step: f64| {
         let mut x = x.to_vec();
         x[j] += step;
-        problem.linearise(&x)
+        problem.linearise(&x).unwrap()
     };
     for j in 0..x.len() {
         for k in 0..3 {
@@ -64,7 +64,7 @@ fn check(x: &[f64]) {
 /// The second derivative of a Lagrangian against differences of first derivatives.
 fn check_curvature(x: &[f64]) {
     let problem = paper(x.len() / 6);
-    let here = problem.linearise(x);
+    let here = problem.linearise(x).unwrap();
     let largest = here.pieces.iter().map(|p| p.value).fold(0.0, f64::max);
     let active = here.pieces.iter().filter(|p| p.value > 0.85 * largest);
     let weights = [0.7, -0.2, 0.4, 0.9, 0.1];
@@ -75,7 +75,7 @@ fn check_curvature(x: &[f64]) {
     let gradient = |j: usize, step: f64| {
         let mut x = x.to_vec();
         x[j] += step;
-        let there = problem.linearise(&x);
+        let there = problem.linearise(&x).unwrap();
         let mut sum = there.residual_jacobian.tr_mul(&multipliers.residual);
         for (place, weight) in &multipliers.pieces {
             let same = there.pieces.iter().find(|p| {
@@ -87,7 +87,7 @@ fn check_curvature(x: &[f64]) {
         }
         sum
     };
-    let found = problem.curvature(x, &multipliers);
+    let found = problem.curvature(x, &multipliers).unwrap();
     for j in 0..x.len() {
         for k in 0..x.len() {
             let expected = difference(|step| gradient(j, step)[k]);
@@ -108,14 +108,14 @@ fn do_not_depend_on_lanes() {
         let mut all = Vec::new();
         for width in Width::available().filter(|width| *width != Width::Scalar) {
             let problem = Arc::new(problem.with_width(width));
-            let problem = Formulated::new(Formulation::TimeFree, problem, &boxes);
-            let here = problem.linearise(&x);
+            let problem = Formulated::new(Formulation::TimeFree, problem, &boxes).unwrap();
+            let here = problem.linearise(&x).unwrap();
             let pieces = here.pieces.iter().map(|piece| (piece.place, 0.3)).collect();
             let multipliers = Multipliers { residual: dvector![0.8, -1.1, 0.5], pieces };
             let mut numbers = here.residual.as_slice().to_vec();
             numbers.extend(&here.residual_jacobian);
             here.pieces.iter().for_each(|piece| numbers.extend(&piece.gradient));
-            numbers.extend(&problem.curvature(&x, &multipliers));
+            numbers.extend(&problem.curvature(&x, &multipliers).unwrap());
             all.push(numbers.into_iter().map(f64::to_bits).collect::<Vec<_>>());
         }
         assert!(all.windows(2).all(|pair| pair[0] == pair[1]), "{terms} terms");
@@ -153,7 +153,8 @@ fn linearisations_and_evaluations_give_the_same_cost() {
             let shrink = if i == 0 { 0.0 } else { rng.unit() };
             let x: Vec<f64> =
                 problem.bounds().iter().map(|[l, u]| shrink * rng.uniform(l, u)).collect();
-            let (found, expected) = (problem.linearise(&x).cost(), problem.evaluate(&x).cost);
+            let (found, expected) =
+                (problem.linearise(&x).unwrap().cost(), problem.evaluate(&x).unwrap().cost);
             assert!((found - expected).abs() < 1e-12 * expected, "{terms} {i}: {found} {expected}");
         }
     }
@@ -169,7 +170,7 @@ fn agree_with_differences_without_bumps() {
 fn agree_with_differences_at_zero_residual() {
     let best = BestKnown::of(paper(2).task()).unwrap();
     let x: Vec<f64> = best.coefficients.concat();
-    assert!(paper(2).linearise(&x).residual.norm() < 1e-7);
+    assert!(paper(2).linearise(&x).unwrap().residual.norm() < 1e-7);
     check(&x);
     check_curvature(&x);
 }

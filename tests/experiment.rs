@@ -9,7 +9,7 @@ use driftless::analysis;
 use driftless::experiment::{self, Instance, Plan, Progress, Record, RunSpec, Store};
 use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
-use driftless::search::{Bounds, Evaluation, Points, Problem};
+use driftless::search::{Bounds, Evaluation, Failure, Points, Problem};
 use driftless::search::{Oracle, Watch};
 use polars::prelude::*;
 
@@ -18,6 +18,7 @@ use polars::prelude::*;
 enum Mood {
     Sound,
     Panics,
+    Fails,
     NotANumber,
     Infinite,
     MinusInfinite,
@@ -34,7 +35,7 @@ struct Fickle {
 
 impl Fickle {
     fn new(mood: Mood, always: bool) -> Self {
-        let bounds = Bounds::new(vec![[-5.0, 5.0]; 3]);
+        let bounds = Bounds::cube(3, [-5.0, 5.0]);
         Self { mood, always, bounds, calls: AtomicU64::new(0) }
     }
 
@@ -53,17 +54,18 @@ impl Problem for Fickle {
         &self.bounds
     }
 
-    fn evaluate(&self, x: &[f64]) -> Evaluation {
+    fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
         self.calls.fetch_add(1, Ordering::Relaxed);
         let mood = if self.is_moody(x) { self.mood } else { Mood::Sound };
         let cost = match mood {
             Mood::Sound => x.iter().map(|x| x * x).sum(),
             Mood::Panics => panic!("out of sorts\nat {x:?}"),
+            Mood::Fails => return Err(format!("no licence at {x:?}").into()),
             Mood::NotANumber => f64::NAN,
             Mood::Infinite => f64::INFINITY,
             Mood::MinusInfinite => f64::NEG_INFINITY,
         };
-        Evaluation { cost, violation: 0.0 }
+        Ok(cost.into())
     }
 }
 
@@ -75,7 +77,7 @@ impl Problem for Shared {
         self.0.bounds()
     }
 
-    fn evaluate(&self, x: &[f64]) -> Evaluation {
+    fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
         self.0.evaluate(x)
     }
 }
@@ -171,12 +173,18 @@ fn check(plan: &Plan, mood: Mood, always: bool, runs: &DataFrame, traces: &DataF
         Mood::Panics if always => &["panicked"],
         Mood::Panics if differentiates => &["panicked", "no-derivatives", "budget-spent"],
         Mood::Panics => &["panicked", "budget-spent", "finished"],
+        Mood::Fails if always => &["failed"],
+        Mood::Fails if differentiates => &["failed", "no-derivatives", "budget-spent"],
+        Mood::Fails => &["failed", "budget-spent", "finished"],
         _ if differentiates => &["no-derivatives", "budget-spent"],
         _ => &["budget-spent", "finished"],
     };
     assert!(expected.contains(&status.as_str()), "{context}");
     if status == "panicked" {
         assert!(message.starts_with("out of sorts\nat [") && message.contains("experiment.rs:"));
+    }
+    if status == "failed" {
+        assert!(message.starts_with("no licence at ["), "{context}");
     }
     let trace: Vec<(u64, f64)> = (0..traces.height())
         .filter(|&row| text(traces, "key", row) == run.key)
@@ -215,7 +223,7 @@ fn listen() {
 #[test]
 fn every_run_leaves_a_record_whatever_the_problem_does() {
     listen();
-    let moods = [Mood::Panics, Mood::NotANumber, Mood::Infinite, Mood::MinusInfinite];
+    let moods = [Mood::Panics, Mood::Fails, Mood::NotANumber, Mood::Infinite, Mood::MinusInfinite];
     for (mood, always) in moods.into_iter().flat_map(|mood| [(mood, false), (mood, true)]) {
         for budget in [1, 2, 10, 64, 65, 151, 400] {
             let folder = tempfile::tempdir().unwrap();
@@ -268,10 +276,10 @@ impl Problem for PanicsAt {
         &self.bounds
     }
 
-    fn evaluate(&self, _: &[f64]) -> Evaluation {
+    fn evaluate(&self, _: &[f64]) -> Result<Evaluation, Failure> {
         let call = self.calls.fetch_add(1, Ordering::Relaxed) + 1;
         assert!(call != self.call, "enough");
-        Evaluation { cost: 1.0 / call as f64, violation: 0.0 }
+        Ok((1.0 / call as f64).into())
     }
 }
 
@@ -279,7 +287,7 @@ impl Problem for PanicsAt {
 #[test]
 fn a_panic_within_a_batch_leaves_exact_counts() {
     for call in 1..=9 {
-        let bounds = Bounds::new(vec![[0.0, 1.0]]);
+        let bounds = Bounds::cube(1, [0.0, 1.0]);
         let problem = PanicsAt { call, bounds, calls: AtomicU64::new(0) };
         let watch = Watch::default();
         let mut oracle = Oracle::new(&problem, 8, &watch);

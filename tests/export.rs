@@ -9,7 +9,7 @@ use driftless::export::{ExportedRun, Suite, SuiteError, SuiteFormat, write_suite
 use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
 use driftless::search::Watch;
-use driftless::search::{Bounds, Evaluation, Problem};
+use driftless::search::{Bounds, Evaluation, Failure, Problem};
 
 struct Silent;
 
@@ -32,7 +32,7 @@ struct HalfSound {
 
 impl HalfSound {
     fn instance(label: &str, group: &str, half: Half, always: bool, dimension: usize) -> Instance {
-        let bounds = Bounds::new(vec![[-1.0, 1.0]; dimension]);
+        let bounds = Bounds::cube(dimension, [-1.0, 1.0]);
         let problem = Self { half, always, bounds };
         let mut instance = Instance::of_problem("half", label, problem);
         label.clone_into(&mut instance.label);
@@ -46,13 +46,13 @@ impl Problem for HalfSound {
         &self.bounds
     }
 
-    fn evaluate(&self, x: &[f64]) -> Evaluation {
+    fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
         let cost = match self.half {
             _ if x[0] > 0.0 && !self.always => 3.0 + x.iter().map(|x| x * x).sum::<f64>(),
             Half::Panics => panic!("the wrong half"),
             Half::NotANumber => f64::NAN,
         };
-        Evaluation { cost, violation: 0.0 }
+        Ok(cost.into())
     }
 }
 

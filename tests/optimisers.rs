@@ -5,7 +5,11 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
 use driftless::search::{Best, Oracle, Rng, Stop, Watch};
-use driftless::search::{Bounds, Evaluation, Problem};
+use driftless::search::{
+    Bounds, Composite, Evaluation, Failure, Linearisation, Multipliers, Piece, Problem,
+};
+use driftless::trajectory::LocalPeak;
+use nalgebra::{DMatrix, DVector};
 
 /// The cost to give at a point instead of the right one, if any.
 type Spoilt = fn(&[f64]) -> Option<f64>;
@@ -34,13 +38,63 @@ impl Problem for Watched {
         self.inner.bounds()
     }
 
-    fn evaluate(&self, x: &[f64]) -> Evaluation {
+    fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
         self.calls.fetch_add(1, Ordering::Relaxed);
         if !self.bounds().contains(x) {
             self.left_the_box.store(true, Ordering::Relaxed);
         }
-        let own = self.inner.evaluate(x);
-        (self.spoilt)(x).map_or(own, |cost| Evaluation { cost, ..own })
+        let own = self.inner.evaluate(x)?;
+        Ok((self.spoilt)(x).map_or(own, |cost| Evaluation { cost, ..own }))
+    }
+}
+
+/// `max(Σ x_j², 0)`, with derivatives; one call may fail.
+struct SumOfSquares {
+    bounds: Bounds,
+    fails_at: u64,
+    calls: AtomicU64,
+}
+
+impl SumOfSquares {
+    fn call(&self) -> Result<(), Failure> {
+        let call = self.calls.fetch_add(1, Ordering::Relaxed) + 1;
+        if call == self.fails_at { Err("enough".into()) } else { Ok(()) }
+    }
+}
+
+impl Problem for SumOfSquares {
+    fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
+        self.call()?;
+        Ok(x.iter().map(|x| x * x).sum::<f64>().into())
+    }
+
+    fn composite(&self) -> Option<&dyn Composite> {
+        Some(self)
+    }
+}
+
+impl Composite for SumOfSquares {
+    fn linearise(&self, x: &[f64]) -> Result<Linearisation, Failure> {
+        self.call()?;
+        let x = DVector::from_column_slice(x);
+        let place = LocalPeak { joint: 0, order: 1, tau: 0.5 };
+        let piece = Piece { place, value: x.norm_squared(), gradient: 2.0 * &x };
+        Ok(Linearisation {
+            norm_weight: 1.0,
+            residual: DVector::zeros(1),
+            residual_jacobian: DMatrix::zeros(1, x.len()),
+            max_weight: 1.0,
+            pieces: vec![piece],
+        })
+    }
+
+    fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure> {
+        let lambda: f64 = multipliers.pieces.iter().map(|(_, lambda)| lambda).sum();
+        Ok(DMatrix::from_diagonal_element(x.len(), x.len(), 2.0 * lambda))
     }
 }
 
@@ -153,9 +207,48 @@ fn costs_that_are_no_numbers_are_never_best() {
                 None => assert!(i < 2, "{}, case {i}: nothing found", settings.name()),
                 Some(best) => {
                     assert!(best.evaluation.cost.is_finite() && spoilt(&best.x).is_none());
-                    assert_eq!(best.evaluation, problem.inner.evaluate(&best.x));
+                    assert_eq!(problem.inner.evaluate(&best.x), Ok(best.evaluation));
                 }
             }
+        }
+    }
+}
+
+/// The second of three variables is fixed, or all of them are.
+#[test]
+fn variables_may_be_fixed() {
+    let some = vec![[-2.0, 1.0], [0.5, 0.5], [-1.0, 2.0]];
+    for (pairs, least) in [(some, 0.25), (vec![[0.5, 0.5]; 2], 0.5), (vec![[-1.0, 2.0]], 0.0)] {
+        let problem =
+            SumOfSquares { bounds: Bounds::new(pairs).unwrap(), fails_at: 0, calls: 0.into() };
+        for settings in Settings::all() {
+            let watch = Watch::default();
+            let mut oracle = Oracle::new(&problem, 3_000, &watch);
+            let stop = settings.optimiser().minimise(&mut oracle, &mut Rng::new(1));
+            let name = settings.name();
+            assert!(matches!(stop, Ok(()) | Err(Stop::BudgetSpent)), "{name}: {stop:?}");
+            let best = oracle.best().unwrap();
+            assert!(problem.bounds.contains(&best.x), "{name}: {:?}", best.x);
+            let allowed = if name == "random" { 0.1 } else { 1e-3 };
+            let cost = best.evaluation.cost;
+            assert!(cost < least + allowed, "{name}: {cost}, not {least}");
+        }
+    }
+}
+
+#[test]
+fn a_problem_that_fails_ends_the_run() {
+    for settings in Settings::all() {
+        for fails_at in [1, 2, 7, 64, 65, 200] {
+            let bounds = Bounds::cube(3, [-2.0, 1.0]);
+            let problem = SumOfSquares { bounds, fails_at, calls: 0.into() };
+            let watch = Watch::default();
+            let mut oracle = Oracle::new(&problem, 3_000, &watch);
+            let stop = settings.optimiser().minimise(&mut oracle, &mut Rng::new(1));
+            let name = settings.name();
+            assert_eq!(stop, Err(Stop::Failed("enough".into())), "{name} {fails_at}");
+            assert_eq!(oracle.evaluations(), fails_at, "{name}");
+            assert_eq!(oracle.best().is_some(), fails_at > 1, "{name}");
         }
     }
 }

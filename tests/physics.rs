@@ -220,7 +220,7 @@ proptest! {
         let (problem, boxes) = paper();
         let problem = std::sync::Arc::new(problem);
         for formulation in Formulation::ALL {
-            let problem = Formulated::new(formulation, problem.clone(), &boxes);
+            let problem = Formulated::new(formulation, problem.clone(), &boxes).unwrap();
             let bits = |e: Evaluation| [e.cost, e.violation].map(f64::to_bits);
             let mut points = Points::zeros(problem.bounds().len(), 12);
             for (x, unit) in points.iter_mut().zip(unit.chunks_exact(13)) {
@@ -235,10 +235,10 @@ proptest! {
             }
             let batch = |points: &Points| {
                 let mut found = Vec::new();
-                problem.evaluate_batch(points, &mut |e| found.push(bits(e)));
+                problem.evaluate_batch(points, &mut |e| found.push(bits(e))).unwrap();
                 found
             };
-            let alone: Vec<_> = points.iter().map(|x| bits(problem.evaluate(x))).collect();
+            let alone: Vec<_> = points.iter().map(|x| bits(problem.evaluate(x).unwrap())).collect();
             prop_assert_eq!(&batch(&points), &alone);
             let mut found = batch(&other);
             found.rotate_left(turned);
@@ -337,8 +337,8 @@ proptest! {
         let coefficients = in_box(&unit);
         let shortest = problem.assess(&coefficients, None).duration;
         let cost = |formulation, duration| {
-            let formulated = Formulated::new(formulation, problem.clone(), &boxes);
-            formulated.evaluate(&formulated.encode(&coefficients, duration)).cost
+            let formulated = Formulated::new(formulation, problem.clone(), &boxes).unwrap();
+            formulated.evaluate(&formulated.encode(&coefficients, duration)).unwrap().cost
         };
         let free = cost(Formulation::TimeFree, shortest);
         prop_assert!((cost(Formulation::Scaled, shortest) - free).abs() < 1e-9);
@@ -392,7 +392,7 @@ fn default_boxes_hold_the_solutions_of_interest() {
     assert!((fine.duration - 7.8185).abs() < 1e-3 && fine.residual() < 1e-4, "{fine:?}");
     let problem = std::sync::Arc::new(problem);
     for formulation in Formulation::ALL {
-        let formulated = Formulated::new(formulation, problem.clone(), &boxes);
+        let formulated = Formulated::new(formulation, problem.clone(), &boxes).unwrap();
         for (coefficients, duration) in
             [(&best, 7.8185), (&published.coefficients, published.duration)]
         {

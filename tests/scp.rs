@@ -16,7 +16,7 @@ const BEST_KNOWN: f64 = 0.781_850;
 fn task(text: &str) -> Formulated {
     let document = Document::embedded("task", text);
     let (problem, boxes) = TaskFile::read(&document).unwrap().build(&document).unwrap();
-    Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes)
+    Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes).unwrap()
 }
 
 /// A polynomial in `τ`, lowest power first.
@@ -140,7 +140,7 @@ fn ends_where_nothing_near_is_better() {
         let start = Scp::start(problem.bounds(), &mut Rng::new(seed));
         assert_eq!(Scp::default().follow(&mut oracle, &start), Ok(Ending::Optimal), "seed {seed}");
         let best = oracle.best().unwrap().clone();
-        let jacobian = problem.linearise(&best.x).residual_jacobian;
+        let jacobian = problem.linearise(&best.x).unwrap().residual_jacobian;
         let inverse = jacobian.clone().pseudo_inverse(1e-9).unwrap();
         let mut rng = Rng::new(seed);
         for _ in 0..500 {
@@ -148,9 +148,9 @@ fn ends_where_nothing_near_is_better() {
             let step = &any - &inverse * (&jacobian * &any);
             let mut x = DVector::from_column_slice(&best.x) + step;
             for _ in 0..2 {
-                x -= &inverse * problem.linearise(x.as_slice()).residual;
+                x -= &inverse * problem.linearise(x.as_slice()).unwrap().residual;
             }
-            let cost = problem.evaluate(x.as_slice()).cost;
+            let cost = problem.evaluate(x.as_slice()).unwrap().cost;
             assert!(cost > best.evaluation.cost - 1e-8, "seed {seed}: {cost}");
         }
     }
@@ -180,7 +180,7 @@ fn gets_as_near_as_others_where_the_goal_is_out_of_reach() {
     std::fs::write(&path, text).unwrap();
     let document = Document::read(&path).unwrap();
     let (problem, boxes) = TaskFile::read(&document).unwrap().build(&document).unwrap();
-    let problem = Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes);
+    let problem = Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes).unwrap();
     for seed in 1..=20 {
         let watch = Watch::default();
         let mut oracle = Oracle::new(&problem, 150_000, &watch);

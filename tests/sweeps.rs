@@ -127,7 +127,7 @@ fn followed(task: &str) -> (f64, f64) {
     };
     let start = BestKnown::of(&problem("").0).unwrap().coefficients.concat();
     let (task, boxes) = problem(task);
-    let problem = Formulated::new(Formulation::TimeFree, Arc::new(task), &boxes);
+    let problem = Formulated::new(Formulation::TimeFree, Arc::new(task), &boxes).unwrap();
     let watch = Watch::default();
     let mut oracle = Oracle::new(&problem, 10_000, &watch);
     // With the task's own weight from the start, and in small steps.

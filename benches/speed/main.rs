@@ -16,7 +16,7 @@ use driftless::optimiser::{De, Optimiser, Pso, RandomSearch, Scp};
 use driftless::reorientation::{
     Accuracy, BestKnown, Boxes, Formulated, Formulation, Reorientation, TaskFile,
 };
-use driftless::search::{Bounds, Composite, Evaluation, Multipliers, Points, Problem};
+use driftless::search::{Bounds, Composite, Evaluation, Failure, Multipliers, Points, Problem};
 use driftless::search::{Oracle, Rng, Watch};
 use driftless::trajectory::Peaks;
 use nalgebra::{DVector, UnitQuaternion};
@@ -46,6 +46,7 @@ impl Paper {
 
     fn formulated(&self, formulation: Formulation, width: Width) -> Formulated {
         Formulated::new(formulation, Arc::new(self.problem.with_width(width)), &self.boxes)
+            .expect("sound boxes")
     }
 }
 
@@ -119,7 +120,7 @@ fn evaluations(paper: &Paper) {
         lines.push(Line::new("fitness with limits", || {
             let mut sum = 0.0;
             let time = microseconds(COUNT, || {
-                problem.evaluate_batch(&all, &mut |evaluation| sum += evaluation.cost);
+                let _ = problem.evaluate_batch(&all, &mut |evaluation| sum += evaluation.cost);
             });
             black_box(sum);
             time
@@ -138,7 +139,7 @@ fn evaluations(paper: &Paper) {
         lines.push(Line::new("first derivatives", || {
             microseconds(some.len(), || {
                 for x in &some {
-                    black_box(problem.linearise(black_box(x)));
+                    let _ = black_box(problem.linearise(black_box(x)));
                 }
             })
         }));
@@ -147,7 +148,7 @@ fn evaluations(paper: &Paper) {
         lines.push(Line::new("second derivatives", || {
             microseconds(some.len(), || {
                 for (x, multipliers) in some.iter().zip(&multipliers) {
-                    black_box(problem.curvature(black_box(x), multipliers));
+                    let _ = black_box(problem.curvature(black_box(x), multipliers));
                 }
             })
         }));
@@ -168,7 +169,7 @@ fn evaluations(paper: &Paper) {
 }
 
 fn multipliers(problem: &Formulated, x: &[f64]) -> Multipliers {
-    let pieces = problem.linearise(x).pieces;
+    let pieces = problem.linearise(x).expect("the task never fails").pieces;
     Multipliers {
         residual: DVector::from_element(3, 1.0),
         pieces: pieces.iter().take(8).map(|piece| (piece.place, 0.1)).collect(),
@@ -183,8 +184,8 @@ impl Problem for Free<'_> {
         self.0
     }
 
-    fn evaluate(&self, x: &[f64]) -> Evaluation {
-        Evaluation { cost: x[0], violation: 0.0 }
+    fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
+        Ok(x[0].into())
     }
 }
 

@@ -53,7 +53,8 @@ fn problems() -> Result<(), CliError> {
     say!("\nproblems: the reorientation task in these formulations");
     say!("(dimensions and boxes are those of the paper's task)");
     for formulation in Formulation::ALL {
-        let formulated = Formulated::new(formulation, problem.clone(), &boxes);
+        let formulated = Formulated::new(formulation, problem.clone(), &boxes)
+            .map_err(|error| document.error_at(0..0, error, None))?;
         say!("\n  {}: {} variables", formulation.name(), formulated.bounds().len());
         say!("    {}", variables(formulation, &boxes));
     }

@@ -84,15 +84,12 @@ impl Plan {
         let file = TaskFile::read(&document)?;
         let (problem, boxes) = file.build(&document)?;
         warn_of(&problem.task().robot);
-        let found = self.search(
-            &settings,
-            // Default settings name no formulation.
-            Formulated::new(
-                Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree),
-                Arc::new(problem),
-                &boxes,
-            ),
-        )?;
+        // Default settings name no formulation.
+        let formulation =
+            Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree);
+        let formulated = Formulated::new(formulation, Arc::new(problem), &boxes)
+            .map_err(|error| document.error_at(0..0, error, None))?;
+        let found = self.search(&settings, formulated)?;
         if self.json {
             say!("{}", self.json(&found));
         } else {
@@ -135,6 +132,9 @@ impl Plan {
         };
         let seconds = started.elapsed().as_secs_f64();
         let interrupted = stop == Err(Stop::Interrupted);
+        if let Err(Stop::Failed(failure)) = stop {
+            note!("warning: the search failed: {failure}");
+        }
         let Some(best) = oracle.best().cloned() else {
             return Err(if interrupted {
                 CliError::Interrupted("no motion was found before".to_owned())

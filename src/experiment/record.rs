@@ -20,6 +20,8 @@ pub enum Status {
     BudgetSpent,
     /// The optimiser needs derivatives that the problem does not have.
     NoDerivatives,
+    /// The problem failed; why.
+    Failed(String),
     /// The optimiser or the problem panicked; what the panic said and where.
     Panicked(String),
 }
@@ -32,6 +34,7 @@ impl Status {
             Ok(Err(Stop::BudgetSpent)) => Some(Self::BudgetSpent),
             Ok(Err(Stop::NoDerivatives)) => Some(Self::NoDerivatives),
             Ok(Err(Stop::Interrupted)) => None,
+            Ok(Err(Stop::Failed(failure))) => Some(Self::Failed(failure.to_string())),
             Err(panic) => Some(Self::Panicked(panic)),
         }
     }
@@ -42,20 +45,21 @@ impl Status {
             Self::Finished => "finished",
             Self::BudgetSpent => "budget-spent",
             Self::NoDerivatives => "no-derivatives",
+            Self::Failed(_) => "failed",
             Self::Panicked(_) => "panicked",
         }
     }
 
     /// Whether a run with this word in its `status` column came to an end that it should not.
     pub fn is_failure(name: &str) -> bool {
-        ["no-derivatives", "panicked"].contains(&name)
+        ["no-derivatives", "failed", "panicked"].contains(&name)
     }
 
     /// What there is to say beyond the word; empty for most.
     pub fn message(&self) -> String {
         match self {
             Self::NoDerivatives => Stop::NoDerivatives.to_string(),
-            Self::Panicked(message) => message.clone(),
+            Self::Failed(message) | Self::Panicked(message) => message.clone(),
             Self::Finished | Self::BudgetSpent => String::new(),
         }
     }

@@ -8,7 +8,7 @@ use super::plan::{Plan, RunSpec};
 use super::record::{Ended, Record, Status};
 use super::store::{Store, StoreError};
 use super::subject::Unavailable;
-use crate::search::{Oracle, Rng, Watch};
+use crate::search::{Failure, Oracle, Rng, Watch};
 
 /// Told of every run that ends.
 pub trait Progress: Sync {
@@ -142,7 +142,7 @@ fn one(
     let (judgement, is_unjudged) = match judged {
         Ok(Ok(judgement)) => (judgement, false),
         Ok(Err(error)) => {
-            outcome = Err(error.to_string());
+            outcome = Ok(Err(Failure::new(error.to_string()).into()));
             (None, true)
         }
         Err(panic) => {

@@ -57,7 +57,7 @@ pub trait Subject: Send + Sync {
         let cost = |problem: Arc<dyn Problem>| {
             let centre =
                 problem.bounds().iter().map(|[a, b]| a + 0.5 * (b - a)).collect::<Vec<_>>();
-            problem.evaluate(&centre).cost
+            problem.evaluate(&centre).map_or(f64::NAN, |found| found.cost)
         };
         self.start_problem().map_or(f64::NAN, cost)
     }

@@ -34,7 +34,7 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::search::{Bounds, Evaluation, Problem};
+use crate::search::{Bounds, Evaluation, Failure, Problem};
 
 /// A function of any number of variables with one known minimum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -132,7 +132,7 @@ impl Analytic {
         };
         Self {
             function,
-            bounds: Bounds::new(vec![[-5.0, 5.0]; n]),
+            bounds: Bounds::cube(n, [-5.0, 5.0]),
             optimum,
             rotation,
             minimum: function.value(&own),
@@ -160,12 +160,12 @@ impl Problem for Analytic {
         &self.bounds
     }
 
-    fn evaluate(&self, x: &[f64]) -> Evaluation {
+    fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
         let own = self.function.minimiser();
         let offset = DVector::from_column_slice(x) - &self.optimum;
         let z = (&self.rotation * offset).add_scalar(own);
         let cost = self.function.value(z.as_slice()) - self.minimum;
-        Evaluation { cost, violation: 0.0 }
+        Ok(cost.into())
     }
 
     fn least_cost(&self) -> Option<f64> {
@@ -213,14 +213,17 @@ mod tests {
         for function in TestFunction::ALL {
             for (n, instance) in [(2, 0), (2, 1), (3, 7), (10, 0), (10, 3), (10, u64::MAX)] {
                 let problem = Analytic::new(function, n, instance);
-                let at_optimum = problem.evaluate(problem.optimum()).cost;
+                let at_optimum = problem.evaluate(problem.optimum()).unwrap().cost;
                 assert!(at_optimum.abs() < 1e-15 * scale(function) * n as f64, "{at_optimum}");
                 assert!(problem.bounds().contains(problem.optimum()));
                 for j in 0..n {
                     for step in [-0.3, -1e-3, 1e-3, 0.3] {
                         let mut x = problem.optimum().to_vec();
                         x[j] += step;
-                        assert!(problem.evaluate(&x).cost > 0.0, "{function:?} {n} {instance}");
+                        assert!(
+                            problem.evaluate(&x).unwrap().cost > 0.0,
+                            "{function:?} {n} {instance}"
+                        );
                     }
                 }
             }
@@ -240,7 +243,8 @@ mod tests {
     /// Textbook functions: SciPy's `rosen`, and closed forms.
     #[test]
     fn instance_zero_is_the_textbooks() {
-        let value = |function, x: &[f64]| Analytic::new(function, x.len(), 0).evaluate(x).cost;
+        let value =
+            |function, x: &[f64]| Analytic::new(function, x.len(), 0).evaluate(x).unwrap().cost;
         let near = |found: f64, expected: f64| {
             assert!((found - expected).abs() < 1e-13 * expected, "{found} is not {expected}");
         };
@@ -265,7 +269,7 @@ mod tests {
         ];
         for (function, expected) in TestFunction::ALL.into_iter().zip(expected) {
             let problem = Analytic::new(function, 3, 2);
-            let found = problem.evaluate(&[1.0, -2.0, 0.5]).cost;
+            let found = problem.evaluate(&[1.0, -2.0, 0.5]).unwrap().cost;
             assert!((found - expected).abs() < 1e-13 * expected, "{function:?}: {found}");
             assert_eq!(problem.optimum()[0], -1.830_056_250_525_76);
         }

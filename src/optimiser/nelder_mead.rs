@@ -5,7 +5,7 @@
 //! Beyond a wall the cost is continued by reflection. When a simplex no longer gains the next one
 //! starts: argmin would stop at equal costs, which a simplex that lies along a level has too early.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::num::NonZeroU32;
 
 use argmin::core::{CostFunction, Error, IterState, Problem, Solver as _, State as _};
@@ -63,12 +63,12 @@ impl NelderMead {
     fn follow(&self, oracle: &mut Oracle<'_>, start: &[f64]) -> Result<(), Stop> {
         let patience = u64::from(self.patience.get()) * start.len() as u64;
         let (mut gained, mut lowest) = (oracle.evaluations(), f64::INFINITY);
-        let view = UnitCube { oracle: RefCell::new(oracle), stop: Cell::new(None) };
+        let view = UnitCube { oracle: RefCell::new(oracle), stop: RefCell::new(None) };
         let mut problem = Problem::new(&view);
         let mut solver = argmin::solver::neldermead::NelderMead::new(self.simplex(start));
         let mut state = solver.init(&mut problem, IterState::new());
         loop {
-            if let Some(stop) = view.stop.get() {
+            if let Some(stop) = view.stop.take() {
                 return Err(stop);
             }
             let (simplex, _) = state.unwrap_or_else(|error| unreachable!("costs compare: {error}"));
@@ -97,7 +97,7 @@ impl NelderMead {
 struct UnitCube<'a, 'b> {
     oracle: RefCell<&'a mut Oracle<'b>>,
     /// Why the oracle answers no more.
-    stop: Cell<Option<Stop>>,
+    stop: RefCell<Option<Stop>>,
 }
 
 impl CostFunction for &UnitCube<'_, '_> {
@@ -105,13 +105,16 @@ impl CostFunction for &UnitCube<'_, '_> {
     type Output = f64;
 
     fn cost(&self, z: &Vec<f64>) -> Result<f64, Error> {
+        if self.stop.borrow().is_some() {
+            return Ok(f64::INFINITY);
+        }
         let mut oracle = self.oracle.borrow_mut();
         let mut x = z.clone();
         mirror_from_unit(&oracle, z, &mut x);
         // argmin gives up where it gets an error while it sets out.
         Ok(oracle.evaluate(&x).map_or_else(
             |stop| {
-                self.stop.set(Some(stop));
+                self.stop.replace(Some(stop));
                 f64::INFINITY
             },
             |evaluation| rank(&evaluation),

@@ -9,18 +9,12 @@ use crate::search::{Evaluation, Points};
 use crate::search::{Oracle, Rng, Stop};
 
 /// Settings of random search.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct RandomSearch {
     /// variables in which a problem with several formulations is searched; without it the problem's first
     #[serde(skip_serializing_if = "Option::is_none")]
     pub formulation: Option<String>,
-}
-
-impl Default for RandomSearch {
-    fn default() -> Self {
-        Self { formulation: None }
-    }
 }
 
 /// Points evaluated at a time; the result does not depend on it.

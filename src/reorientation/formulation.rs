@@ -9,7 +9,10 @@ use serde::{Deserialize, Serialize};
 use super::fitness::{Accuracy, Assessment, Reorientation};
 use super::measure::Workspace;
 use super::settings::Boxes;
-use crate::search::{Bounds, Composite, Evaluation, Linearisation, Multipliers, Points, Problem};
+use crate::search::{
+    Bounds, BoundsError, Composite, Evaluation, Failure, Linearisation, Multipliers, Points,
+    Problem,
+};
 
 /// The variables in which an optimiser sees the task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -52,8 +55,12 @@ pub struct Formulated {
 }
 
 impl Formulated {
-    /// The task in these variables, within these boxes.
-    pub fn new(formulation: Formulation, task: Arc<Reorientation>, boxes: &Boxes) -> Self {
+    /// The task in these variables, within these boxes of its own family.
+    pub fn new(
+        formulation: Formulation,
+        task: Arc<Reorientation>,
+        boxes: &Boxes,
+    ) -> Result<Self, BoundsError> {
         let family = task.family();
         let mut pairs: Vec<[f64; 2]> = match formulation {
             Formulation::Raw => {
@@ -67,7 +74,7 @@ impl Formulated {
         if formulation != Formulation::TimeFree {
             pairs.push(boxes.duration);
         }
-        Self { formulation, task, bounds: Bounds::new(pairs) }
+        Ok(Self { formulation, task, bounds: Bounds::new(pairs)? })
     }
 
     /// The task behind the formulation.
@@ -129,17 +136,22 @@ impl Problem for Formulated {
         &self.bounds
     }
 
-    fn evaluate(&self, x: &[f64]) -> Evaluation {
+    fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
         let mut coefficients = vec![0.0; self.task.family().dimension()];
-        self.evaluate_in(&mut self.task.workspace(), &mut coefficients, x)
+        Ok(self.evaluate_in(&mut self.task.workspace(), &mut coefficients, x))
     }
 
-    fn evaluate_batch(&self, points: &Points, each: &mut dyn FnMut(Evaluation)) {
+    fn evaluate_batch(
+        &self,
+        points: &Points,
+        each: &mut dyn FnMut(Evaluation),
+    ) -> Result<(), Failure> {
         let mut workspace = self.task.workspace();
         let mut coefficients = vec![0.0; self.task.family().dimension()];
         for x in points {
             each(self.evaluate_in(&mut workspace, &mut coefficients, x));
         }
+        Ok(())
     }
 
     fn composite(&self) -> Option<&dyn Composite> {
@@ -148,11 +160,11 @@ impl Problem for Formulated {
 }
 
 impl Composite for Formulated {
-    fn linearise(&self, x: &[f64]) -> Linearisation {
-        self.task().linearise(x)
+    fn linearise(&self, x: &[f64]) -> Result<Linearisation, Failure> {
+        Ok(self.task().linearise(x))
     }
 
-    fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> DMatrix<f64> {
-        self.task().curvature(x, multipliers)
+    fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure> {
+        Ok(self.task().curvature(x, multipliers))
     }
 }

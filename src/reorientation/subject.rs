@@ -55,7 +55,8 @@ impl TaskSubject {
     pub(super) fn formulated(&self, space: &str) -> Result<Formulated, Unavailable> {
         let formulation = Formulation::named(Some(space))
             .ok_or_else(|| Unavailable::new(format!("the task has no formulation `{space}`")))?;
-        Ok(Formulated::new(formulation, self.problem.clone(), &self.boxes))
+        Formulated::new(formulation, self.problem.clone(), &self.boxes)
+            .map_err(|error| Unavailable::new(error.to_string()))
     }
 
     /// The coefficients of a point.

@@ -2,16 +2,17 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::failure::Failure;
 use super::problem::Problem;
 use crate::trajectory::LocalPeak;
 
 /// A cost that is convex in smooth parts: `J(x) = a ‖r(x)‖ + b max_p h_p(x)`.
 pub trait Composite: Problem {
     /// Values and first derivatives of all parts that matter near `x`.
-    fn linearise(&self, x: &[f64]) -> Linearisation;
+    fn linearise(&self, x: &[f64]) -> Result<Linearisation, Failure>;
 
     /// Second derivative of `ν · r(x) + Σ λ_p h_p(x)`, to a few digits.
-    fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> DMatrix<f64>;
+    fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure>;
 }
 
 /// What the parts weigh in a Lagrangian.

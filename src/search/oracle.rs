@@ -6,11 +6,12 @@ use std::time::{Duration, Instant};
 use nalgebra::DMatrix;
 
 use super::composite::{Composite, Linearisation, Multipliers};
+use super::failure::Failure;
 use super::points::{Bounds, Points};
 use super::problem::{Evaluation, Problem};
 
 /// Why an optimiser has to stop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Stop {
     /// Every evaluation of the budget is spent.
     #[error("budget spent")]
@@ -21,6 +22,9 @@ pub enum Stop {
     /// The user wants the program to end.
     #[error("interrupted")]
     Interrupted,
+    /// The problem failed, or was asked what it cannot be asked.
+    #[error(transparent)]
+    Failed(#[from] Failure),
 }
 
 /// Shared with whoever watches a run from outside.
@@ -123,7 +127,7 @@ impl<'a> Oracle<'a> {
         self.budget - self.evaluations
     }
 
-    /// Evaluations made: those that returned, and the one that panicked where one did.
+    /// Evaluations made: those that returned, and the one that failed or panicked where one did.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
     }
@@ -158,7 +162,7 @@ impl<'a> Oracle<'a> {
         self.in_problem
     }
 
-    /// The best so far; a cost that is infinite or not a number is never best.
+    /// The best so far; a cost that is infinite or NaN is never best.
     pub fn best(&self) -> Option<&Best> {
         self.best.as_ref()
     }
@@ -166,46 +170,64 @@ impl<'a> Oracle<'a> {
     /// Evaluates one point.
     pub fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, Stop> {
         self.check()?;
+        self.check_dimension(x.len())?;
         self.begin();
         let problem = self.problem;
-        let evaluation = self.timed(|| problem.evaluate(x));
+        let evaluation = self.timed(|| problem.evaluate(x))?;
         self.record(x, evaluation);
         Ok(evaluation)
     }
 
-    /// Evaluates many points; `out` has one place for each. Where the budget ends within them, the
-    /// first ones are evaluated and the run stops.
+    /// Evaluates many points; `out` has one place for each, or more. Where the budget ends within them,
+    /// the first ones are evaluated and the run stops.
+    ///
+    /// A batch that answers to fewer points than asked, or to more, fails; the answers to points that were
+    /// asked are kept.
     pub fn evaluate_batch(&mut self, points: &Points, out: &mut [Evaluation]) -> Result<(), Stop> {
         self.check()?;
+        self.check_dimension(points.dimension())?;
+        if out.len() < points.len() {
+            let (room, count) = (out.len(), points.len());
+            let reason =
+                format!("found room for {room} evaluations, expected {count}, one per point");
+            return Err(Failure::new(reason).into());
+        }
         let affordable = usize::try_from(self.remaining()).unwrap_or(usize::MAX);
         let cut = (affordable < points.len()).then(|| points.prefix(affordable));
         let points = cut.as_ref().unwrap_or(points);
-        let mut places = points.iter().zip(out).peekable();
-        if places.peek().is_none() {
+        if points.is_empty() {
             return Ok(());
         }
         self.begin();
+        let (mut answers, count) = (0, points.len());
         let clock = Instant::now();
-        self.problem.evaluate_batch(points, &mut |evaluation| {
-            if let Some((x, place)) = places.next() {
-                *place = evaluation;
-                self.record(x, evaluation);
+        let outcome = self.problem.evaluate_batch(points, &mut |evaluation| {
+            if answers < count {
+                out[answers] = evaluation;
+                self.record(&points[answers], evaluation);
             }
-            if places.peek().is_some() {
+            answers += 1;
+            if answers < count {
                 self.begin();
             }
         });
         self.in_problem += clock.elapsed();
+        outcome?;
+        if answers != count {
+            let reason =
+                format!("found {answers} answers to a batch of {count} points, expected {count}");
+            return Err(Failure::new(reason).into());
+        }
         if cut.is_some() { Err(Stop::BudgetSpent) } else { Ok(()) }
     }
 
     /// Evaluates one point together with its first derivatives: one evaluation and one linearisation.
     pub fn linearise(&mut self, x: &[f64]) -> Result<Linearisation, Stop> {
-        let composite = self.composite()?;
+        let composite = self.composite(x)?;
         self.begin();
         self.linearisations += 1;
-        let linearisation = self.timed(|| composite.linearise(x));
-        self.record(x, Evaluation { cost: linearisation.cost(), violation: 0.0 });
+        let linearisation = self.timed(|| composite.linearise(x))?;
+        self.record(x, linearisation.cost().into());
         Ok(linearisation)
     }
 
@@ -215,9 +237,9 @@ impl<'a> Oracle<'a> {
         x: &[f64],
         multipliers: &Multipliers,
     ) -> Result<DMatrix<f64>, Stop> {
-        let composite = self.composite()?;
+        let composite = self.composite(x)?;
         self.curvatures += 1;
-        Ok(self.timed(|| composite.curvature(x, multipliers)))
+        Ok(self.timed(|| composite.curvature(x, multipliers))?)
     }
 
     /// Counts the conic subproblem that `solve` solves, or fails to.
@@ -271,9 +293,19 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    fn composite(&self) -> Result<&'a dyn Composite, Stop> {
+    fn composite(&self, x: &[f64]) -> Result<&'a dyn Composite, Stop> {
         self.check()?;
+        self.check_dimension(x.len())?;
         self.problem.composite().ok_or(Stop::NoDerivatives)
+    }
+
+    fn check_dimension(&self, found: usize) -> Result<(), Stop> {
+        let expected = self.problem.bounds().len();
+        if found == expected {
+            return Ok(());
+        }
+        let reason = format!("found a point with {found} variables, expected {expected}");
+        Err(Failure::new(reason).into())
     }
 
     /// Does work that is the problem's, on its clock.
@@ -284,7 +316,7 @@ impl<'a> Oracle<'a> {
         result
     }
 
-    /// Counts an evaluation that is about to be made: it may panic and never be recorded.
+    /// Counts an evaluation that is about to be made: it may fail or panic and never be recorded.
     fn begin(&mut self) {
         self.evaluations += 1;
         self.watch.add_evaluations(1);

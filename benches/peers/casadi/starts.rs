@@ -20,7 +20,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let first = arguments.next().unwrap_or(Ok(1))?;
     let document = TaskFile::paper();
     let (task, boxes) = TaskFile::read(&document)?.build(&document)?;
-    let problem = Formulated::new(Formulation::TimeFree, Arc::new(task), &boxes);
+    let problem =
+        Formulated::new(Formulation::TimeFree, Arc::new(task), &boxes).expect("sound boxes");
     // Not printed: whatever a process pays only once is paid here.
     follow(&problem, first)?;
     for seed in first..first + starts {

@@ -2,7 +2,8 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SecondOrderConeT, SolverStatus,
+    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SecondOrderConeT,
+    SolverStatus, ZeroConeT,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -27,9 +28,15 @@ impl Region {
         Self { lower: lower.sup(&-&extent), upper: upper.inf(&extent), extent }
     }
 
+    /// The variables that can move, or cannot.
+    fn variables(&self, fixed: bool) -> impl Iterator<Item = usize> {
+        (0..self.extent.len()).filter(move |&j| (self.extent[j] <= 0.0) == fixed)
+    }
+
     /// How far towards the region's wall a step goes; 1 is on it.
     pub(super) fn reach(&self, d: &DVector<f64>) -> f64 {
-        d.iter().zip(&self.extent).map(|(d, extent)| d.abs() / extent).fold(0.0, f64::max)
+        let variables = d.iter().zip(&self.extent).filter(|(_, extent)| **extent > 0.0);
+        variables.map(|(d, extent)| d.abs() / extent).fold(0.0, f64::max)
     }
 }
 
@@ -88,9 +95,12 @@ impl Model<'_> {
         let Region { lower, upper, .. } = self.region;
         let n = lower.len();
         let pieces = self.in_reach(values);
-        let linear = pieces.len() + 2 * n;
+        let fixed = self.region.variables(true).count();
+        let linear = pieces.len() + 2 * (n - fixed);
         let rows = self.rows(values, &pieces);
-        let cones = [NonnegativeConeT(linear), SecondOrderConeT(values.residual.len() + 1)];
+        let mut cones = vec![NonnegativeConeT(linear), SecondOrderConeT(values.residual.len() + 1)];
+        // As two inequalities a fixed variable would leave the interior-point method no interior.
+        cones.extend((fixed > 0).then_some(ZeroConeT(fixed)));
         let mut q = vec![0.0; n];
         q.extend([self.parts.max_weight, self.parts.norm_weight]);
         let curvature = upper_triangle(self.curvature, n + 2);
@@ -114,11 +124,12 @@ impl Model<'_> {
         }
         // Within the region to the last bit.
         let d = DVector::from_column_slice(&solution.x[..n]).sup(lower).inf(upper);
-        let nu = -DVector::from_column_slice(&solution.z[linear + 1..]);
+        let nu = &solution.z[linear + 1..linear + 1 + values.residual.len()];
+        let nu = -DVector::from_column_slice(nu);
         Some(Step { cost: self.cost(values, &d), d, lambda, nu })
     }
 
-    /// `T ≥ h_p + g_p · d`, the region, and the cone, in this order.
+    /// `T ≥ h_p + g_p · d`, the region, the cone, and the fixed variables, in this order.
     fn rows(&self, values: &Values, pieces: &[usize]) -> Rows {
         let Region { lower, upper, .. } = self.region;
         let (duration, norm) = (lower.len(), lower.len() + 1);
@@ -128,7 +139,7 @@ impl Model<'_> {
             let slopes = gradient.enumerate().filter(|(_, slope)| *slope != 0.0);
             rows.push(slopes.chain([(duration, -1.0)]), -values.pieces[p]);
         }
-        for j in 0..lower.len() {
+        for j in self.region.variables(false) {
             rows.push([(j, 1.0)], upper[j]);
             rows.push([(j, -1.0)], -lower[j]);
         }
@@ -136,6 +147,9 @@ impl Model<'_> {
         for (k, residual) in values.residual.iter().enumerate() {
             let row = self.parts.residual_jacobian.row(k);
             rows.push(row.iter().map(|slope| -slope).enumerate(), *residual);
+        }
+        for j in self.region.variables(true) {
+            rows.push([(j, 1.0)], lower[j]);
         }
         rows
     }
