@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use driftless::analysis;
-use driftless::experiment::{self, Instance, Plan, Progress, Record, RunSpec, Store};
+use driftless::experiment::{self, Identity, Instance, Plan, Progress, Record, RunSpec, Store};
 use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
 use driftless::search::{Bounds, Evaluation, Failure, Points, Problem};
@@ -101,7 +101,8 @@ fn run(plan: &Plan, store: &Store) -> u64 {
 fn plan(mood: Mood, always: bool, budget: u64) -> (Plan, Arc<Fickle>) {
     let problem = Arc::new(Fickle::new(mood, always));
     let name = format!("{mood:?} {always}");
-    let instance = Instance::of_problem(&name, 1, Shared(problem.clone()));
+    let instance =
+        Instance::of_problem(&name, Identity::new().with("version", 1), Shared(problem.clone()));
     let number = |n| NonZeroU64::new(n).unwrap();
     let plan = Plan::over("fickle", vec![instance], Settings::all(), number(1), number(budget));
     (plan, problem)
@@ -254,7 +255,7 @@ fn many_short_runs_are_stored() {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::open(folder.path()).unwrap();
     let problem = Analytic::new(TestFunction::Sphere, 3, 0);
-    let instance = Instance::of_problem("sphere", 0, problem);
+    let instance = Instance::of_problem("sphere", Identity::new().with("version", 0), problem);
     let number = |n| NonZeroU64::new(n).unwrap();
     let random = [Settings::by_name("random").unwrap()];
     let plan = Plan::over("many", vec![instance], random, number(600), number(5));

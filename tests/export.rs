@@ -4,7 +4,9 @@
 use std::fs;
 use std::num::NonZeroU64;
 
-use driftless::experiment::{self, Entrant, Instance, Plan, Progress, Record, RunSpec, Store};
+use driftless::experiment::{
+    self, Entrant, Identity, Instance, Plan, Progress, Record, RunSpec, Store,
+};
 use driftless::export::{ExportedRun, Suite, SuiteError, SuiteFormat, write_suite};
 use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
@@ -34,7 +36,8 @@ impl HalfSound {
     fn instance(label: &str, group: &str, half: Half, always: bool, dimension: usize) -> Instance {
         let bounds = Bounds::cube(dimension, [-1.0, 1.0]);
         let problem = Self { half, always, bounds };
-        let mut instance = Instance::of_problem("half", label, problem);
+        let mut instance =
+            Instance::of_problem("half", Identity::new().with("version", label), problem);
         label.clone_into(&mut instance.label);
         group.clone_into(&mut instance.group);
         instance
@@ -110,7 +113,7 @@ fn every_run_is_a_trial_from_its_first_to_its_last_evaluation() {
 fn optima_are_known_or_least_found() {
     let sphere = Analytic::new(TestFunction::Sphere, 4, 1);
     let mut instances = halves();
-    let mut instance = Instance::of_problem("sphere", 1, sphere);
+    let mut instance = Instance::of_problem("sphere", Identity::new().with("version", 1), sphere);
     (instance.label, instance.group) = ("e".to_owned(), "e".to_owned());
     instances.push(instance);
     let (suite, _) = suite(instances);
@@ -164,7 +167,8 @@ fn groups_may_have_several_dimensions() {
 #[test]
 fn folders_are_told_apart() {
     let problem = Analytic::new(TestFunction::Sphere, 2, 0);
-    let instances = vec![Instance::of_problem("sphere", 0, problem)];
+    let instances =
+        vec![Instance::of_problem("sphere", Identity::new().with("version", 0), problem)];
     let mut plan = Plan::over("labels", instances, Settings::all(), number(1), number(1));
     for (entrant, label) in plan.optimisers.iter_mut().zip(["a/b", "a b", "A=b", "a_b-2"]) {
         label.clone_into(&mut entrant.label);
@@ -177,7 +181,11 @@ fn folders_are_told_apart() {
 /// Sixteen bits number the functions.
 #[test]
 fn too_many_functions_are_an_error() {
-    let sphere = Instance::of_problem("sphere", 0, Analytic::new(TestFunction::Sphere, 2, 0));
+    let sphere = Instance::of_problem(
+        "sphere",
+        Identity::new().with("version", 0),
+        Analytic::new(TestFunction::Sphere, 2, 0),
+    );
     let instance = |i: usize| {
         let mut instance = sphere.clone();
         (instance.label, instance.group) = (i.to_string(), i.to_string());

@@ -30,7 +30,7 @@ pub(super) fn settled(plan: &Plan, runs: &[Run]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::{Experiment, Instance};
+    use crate::experiment::{Experiment, Identity, Instance};
     use crate::functions::{Analytic, TestFunction};
     use crate::optimiser::Settings;
 
@@ -39,7 +39,11 @@ mod tests {
         let sphere = Analytic::new(TestFunction::Sphere, 2, 1);
         let plan = Experiment::new("x")
             .unwrap()
-            .with_instance(Instance::of_problem("sphere", 1, sphere))
+            .with_instance(Instance::of_problem(
+                "sphere",
+                Identity::new().with("version", 1),
+                sphere,
+            ))
             .with_optimiser(Settings::by_name("random").unwrap())
             .plan()
             .unwrap();

@@ -95,7 +95,7 @@ fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError>
         _ => experiment.seeds().to_string(),
     };
     say!("# experiment, with every default filled in");
-    say!("{}", plan.experiment.to_toml()?.trim_end());
+    say!("{}", plan.experiment.to_toml().map_err(CliError::Resolved)?.trim_end());
     let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
     say!(
         "\n# {} runs: {instances} instances × {optimisers} optimisers × {seeds} seeds",

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::CliError;
 use super::results::{ResultsFolder, command};
 use crate::analysis::render;
-use crate::experiment::{Failure, Folder, Standing, Tally, standing};
+use crate::experiment::{FailedRun, Folder, Standing, Tally, standing};
 
 /// Say which runs of an experiment are done, failed or missing
 #[derive(Debug, Args)]
@@ -87,7 +87,7 @@ fn json<'a>(results: &'a Folder, standing: &'a Standing, batches: usize) -> Stat
         optimiser: &plan.optimisers[optimiser].label,
         counts: (*tally).into(),
     };
-    let failure = |failure: &'a Failure| {
+    let failure = |failure: &'a FailedRun| {
         let run = &plan.runs[failure.run];
         FailureJson {
             key: &run.key,

@@ -7,10 +7,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::subject::{Instance, Unavailable};
+use super::identity::Identity;
+use super::subject::Instance;
 use crate::input::{Document, InputError};
 use crate::optimiser::{Optimiser, Settings};
-use crate::search::{Oracle, Rng, Stop};
+use crate::search::{Failure, Oracle, Rng, Stop};
 
 /// One optimiser of the field.
 #[derive(Clone)]
@@ -23,8 +24,8 @@ pub struct Entrant {
     pub kind: String,
     /// The name of the optimiser that searches first, of one that has two phases.
     pub search: Option<String>,
-    /// All settings, as JSON; together with the formulation they determine a run.
-    pub settings: Value,
+    /// All settings; together with the formulation they determine a run.
+    pub settings: Identity,
     /// The formulation asked for; without it each subject's preferred one.
     pub formulation: Option<String>,
     /// Whether it can search only problems with derivatives.
@@ -80,7 +81,7 @@ impl From<Settings> for Entrant {
             label: settings.title(),
             kind: settings.name().to_owned(),
             search,
-            settings: serde_json::to_value(&settings).unwrap_or_default(),
+            settings: Identity::of(serde_json::to_value(&settings).unwrap_or_default()),
             formulation: settings.formulation().map(str::to_owned),
             needs_derivatives: settings.optimiser().needs_derivatives(),
             seeds: None,
@@ -95,16 +96,12 @@ impl From<Settings> for Entrant {
 impl Entrant {
     /// An optimiser of one's own. `settings` is all that determines its runs beside the seed, a version of its
     /// code included: a stored run with the same is not done again.
-    pub fn new(
-        name: &str,
-        settings: impl Into<Value>,
-        optimiser: impl Optimiser + 'static,
-    ) -> Self {
+    pub fn new(name: &str, settings: Identity, optimiser: impl Optimiser + 'static) -> Self {
         Self {
             label: name.to_owned(),
             kind: name.to_owned(),
             search: None,
-            settings: settings.into(),
+            settings,
             formulation: optimiser.formulation().map(str::to_owned),
             needs_derivatives: optimiser.needs_derivatives(),
             seeds: None,
@@ -122,9 +119,9 @@ impl Entrant {
     }
 
     /// The optimiser itself.
-    pub fn optimiser(&self) -> Result<&dyn Optimiser, Unavailable> {
+    pub fn optimiser(&self) -> Result<&dyn Optimiser, Failure> {
         self.optimiser.as_deref().ok_or_else(|| {
-            Unavailable::new(format!(
+            Failure::new(format!(
                 "the optimiser `{}` is of the program that made these results",
                 self.kind
             ))
@@ -138,7 +135,7 @@ impl Entrant {
 
     /// All that determines its runs beside formulation, seed and budget.
     pub(super) fn identity(&self) -> Value {
-        let mut settings = self.settings.clone();
+        let mut settings = self.settings.json().clone();
         remove_formulation(&mut settings);
         match self.catalogued {
             Some(_) => settings,
@@ -180,7 +177,7 @@ impl OutsideTable {
 
     /// An entrant that can be reported and not be run.
     pub(super) fn entrant(self, document: &Document) -> Result<Entrant, InputError> {
-        let settings = serde_json::from_str(self.settings.get_ref()).map_err(|error| {
+        let settings = Identity::read(self.settings.get_ref()).map_err(|error| {
             let message = format!("found no JSON, expected the optimiser's settings: {error}");
             document.error_at(self.settings.span(), message, None)
         })?;

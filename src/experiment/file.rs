@@ -171,31 +171,42 @@ impl Experiment {
         Ok((self, files))
     }
 
-    /// The experiment as a file that says it in full, with every default filled in.
-    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
-        /// The file as one writes it.
+    /// The experiment as a TOML file that says it in full, with every default filled in; or what went wrong.
+    pub fn to_toml(&self) -> Result<String, String> {
+        /// What stands before the tables of a kind.
         #[derive(Serialize)]
-        struct Written<'a> {
+        struct Head<'a> {
             name: &'a str,
             seeds: NonZeroU64,
             budget: BudgetTable,
             #[serde(skip_serializing_if = "Option::is_none")]
             targets: &'a Option<Spanned<TargetTable>>,
-            #[serde(flatten)]
-            source: serde_json::Map<String, serde_json::Value>,
+        }
+        /// What stands behind them.
+        #[derive(Serialize)]
+        struct Tail<'a> {
             #[serde(skip_serializing_if = "Vec::is_empty")]
             problem: Vec<ProblemTable>,
             optimiser: Vec<WrittenEntrant<'a>>,
         }
-        toml::to_string(&Written {
+        let wrong = |error: toml::ser::Error| error.to_string();
+        let head = Head {
             name: &self.name,
             seeds: self.seeds,
             budget: BudgetTable { evaluations: self.budget },
             targets: &self.targets,
-            source: self.source.as_ref().map(|source| source.written()).unwrap_or_default(),
+        };
+        let tail = Tail {
             problem: self.instances.iter().map(ProblemTable::of).collect(),
             optimiser: self.field.iter().map(|e| WrittenEntrant::of(&e.entrant)).collect(),
-        })
+        };
+        let own = self.source.as_ref().map(|source| source.written()).transpose()?;
+        let parts = [
+            toml::to_string(&head).map_err(wrong)?,
+            own.unwrap_or_default(),
+            toml::to_string(&tail).map_err(wrong)?,
+        ];
+        Ok(parts.iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join("\n"))
     }
 
     /// The experiment that runs when none is named.

@@ -77,7 +77,7 @@ impl Folder {
         for (name, text) in files {
             keep(&path.join(name), &text)?;
         }
-        let text = experiment.to_toml().map_err(|e| FolderError::Written(e.to_string()))?;
+        let text = experiment.to_toml().map_err(FolderError::Written)?;
         let was_another = keep(&path.join(EXPERIMENT), &text)?;
         Ok(Self { path: path.to_owned(), plan, store, was_another })
     }

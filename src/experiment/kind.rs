@@ -3,8 +3,6 @@
 use std::fmt;
 use std::sync::Arc;
 
-use serde_json::{Map, Value};
-
 use super::subject::Instance;
 use crate::input::{Document, InputError};
 
@@ -30,8 +28,8 @@ pub trait Source: fmt::Debug + Send + Sync {
     /// The instances.
     fn instances(&self, document: &Document) -> Result<Vec<Instance>, InputError>;
 
-    /// The keys as a file has them, with every default filled in.
-    fn written(&self) -> Map<String, Value>;
+    /// The keys as a TOML file has them, with every default filled in; or what went wrong.
+    fn written(&self) -> Result<String, String>;
 
     /// Where in the file it sets budgets of its own, if it does.
     fn sets_budgets(&self) -> bool {
@@ -112,13 +110,5 @@ impl Registry {
         }
         let kind = found.map(|(kind, _)| kind).or_else(|| self.kinds.first());
         Ok(kind.map(|kind| &**kind))
-    }
-}
-
-/// What serde makes of a source's keys, for [`Source::written`].
-pub fn written(keys: &impl serde::Serialize) -> Map<String, Value> {
-    match serde_json::to_value(keys) {
-        Ok(Value::Object(map)) => map,
-        _ => Map::new(),
     }
 }

@@ -2,27 +2,22 @@
 
 use std::sync::Arc;
 
-use serde_json::Value;
-
-use super::subject::{Instance, Subject, Unavailable};
-use crate::search::Problem;
+use super::identity::Identity;
+use super::subject::{Instance, Subject};
+use crate::search::{Failure, Problem};
 
 /// A problem of somebody's own in its own variables.
 struct Plain {
     name: String,
-    identity: Value,
+    identity: Identity,
     problem: Arc<dyn Problem>,
 }
 
 impl Instance {
     /// An instance on a problem of one's own, with the name as label. `identity` is all that determines its costs,
     /// a version of its code included: see [`Subject::identity`].
-    pub fn of_problem(
-        name: &str,
-        identity: impl Into<Value>,
-        problem: impl Problem + 'static,
-    ) -> Self {
-        let (identity, problem) = (identity.into(), Arc::new(problem));
+    pub fn of_problem(name: &str, identity: Identity, problem: impl Problem + 'static) -> Self {
+        let problem = Arc::new(problem);
         Self::new(name, Arc::new(Plain { name: name.to_owned(), identity, problem }))
     }
 }
@@ -36,11 +31,11 @@ impl Subject for Plain {
         &self.name
     }
 
-    fn identity(&self) -> Value {
+    fn identity(&self) -> Identity {
         self.identity.clone()
     }
 
-    fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Unavailable> {
+    fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Failure> {
         Ok(self.problem.clone())
     }
 }

@@ -237,7 +237,7 @@ fn identity(instance: &Instance) -> serde_json::Value {
     serde_json::json!({
         "kind": subject.kind(),
         "name": subject.name(),
-        "identity": subject.identity(),
+        "identity": subject.identity().json(),
     })
 }
 

@@ -7,7 +7,6 @@ use super::caught::caught;
 use super::plan::{Plan, RunSpec};
 use super::record::{Ended, Record, Status};
 use super::store::{Store, StoreError};
-use super::subject::Unavailable;
 use crate::search::{Failure, Oracle, Rng, Watch};
 
 /// Told of every run that ends.
@@ -114,7 +113,7 @@ pub enum RunError {
     Store(#[from] StoreError),
     /// A problem or an optimiser is another program's.
     #[error("{0}, which alone can do the runs that are missing")]
-    Unavailable(#[from] Unavailable),
+    Unavailable(#[from] Failure),
     /// No threads to be had.
     #[error("cannot start worker threads: {0}")]
     Threads(String),
@@ -142,7 +141,7 @@ fn one(
     let (judgement, is_unjudged) = match judged {
         Ok(Ok(judgement)) => (judgement, false),
         Ok(Err(error)) => {
-            outcome = Ok(Err(Failure::new(error.to_string()).into()));
+            outcome = Ok(Err(error.into()));
             (None, true)
         }
         Err(panic) => {

@@ -13,7 +13,7 @@ pub struct Standing {
     /// One entry an optimiser, in the plan's order.
     pub tallies: Vec<Tally>,
     /// Stored runs that failed.
-    pub failures: Vec<Failure>,
+    pub failures: Vec<FailedRun>,
     /// Stored runs that do not belong to the plan.
     pub others: usize,
     /// Stored runs in another format than this version reads: how many of each.
@@ -66,7 +66,7 @@ impl std::iter::Sum for Tally {
 
 /// A run that failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Failure {
+pub struct FailedRun {
     /// Index of the run in the plan.
     pub run: usize,
     /// The word in the `status` column.
@@ -107,7 +107,7 @@ pub fn standing(plan: &Plan, store: &Store) -> Result<Standing, StoreError> {
                 if Status::is_failure(status) {
                     tally.failed += 1;
                     let message = messages.get(i).unwrap_or_default().to_owned();
-                    failures.push(Failure { run, status: status.to_owned(), message });
+                    failures.push(FailedRun { run, status: status.to_owned(), message });
                 }
             }
             Ok(())

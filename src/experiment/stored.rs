@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::subject::{Instance, Results, Subject, Unavailable};
+use super::identity::Identity;
+use super::subject::{Instance, Results, Subject};
 use super::value::{Quantity, Value};
 use crate::exhibit::{Exhibits, Finding};
 use crate::input::{Document, Finite, InputError};
-use crate::search::Problem;
+use crate::search::{Failure, Problem};
 
 /// A `[[problem]]` table: an instance that a program has entered, with all that its results need to be read.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -81,7 +82,7 @@ impl ProblemTable {
 
     /// The instance, which can be reported and not be run.
     pub(super) fn instance(&self, document: &Document) -> Result<Instance, InputError> {
-        let identity = serde_json::from_str(self.identity.get_ref()).map_err(|error| {
+        let identity = Identity::read(self.identity.get_ref()).map_err(|error| {
             let message = format!("found no JSON, expected the problem's identity: {error}");
             document.error_at(self.identity.span(), message, None)
         })?;
@@ -97,7 +98,7 @@ impl ProblemTable {
 #[derive(Debug)]
 struct Stored {
     table: ProblemTable,
-    identity: serde_json::Value,
+    identity: Identity,
 }
 
 impl Subject for Stored {
@@ -109,7 +110,7 @@ impl Subject for Stored {
         &self.table.name
     }
 
-    fn identity(&self) -> serde_json::Value {
+    fn identity(&self) -> Identity {
         self.identity.clone()
     }
 
@@ -117,8 +118,8 @@ impl Subject for Stored {
         self.table.spaces.clone()
     }
 
-    fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Unavailable> {
-        Err(Unavailable::new(format!(
+    fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Failure> {
+        Err(Failure::new(format!(
             "the problem `{}` is of the program that made these results",
             self.table.name
         )))

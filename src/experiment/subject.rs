@@ -6,10 +6,11 @@ use std::num::NonZeroU64;
 use std::sync::Arc;
 
 use super::caught::caught;
+use super::identity::Identity;
 use super::run::{Run, best_run};
 use super::value::{Judgement, Quantity, Value};
 use crate::exhibit::Exhibits;
-use crate::search::Problem;
+use crate::search::{Failure, Problem};
 
 /// What the runs of an instance minimise: a problem with all that the harness has to know of it.
 ///
@@ -25,7 +26,7 @@ pub trait Subject: Send + Sync {
     /// Everything that determines its costs. Runs whose identities differ have different keys; a stored
     /// run with the same identity is not done again. So put a version in it, and raise that when
     /// the code changes what a cost is.
-    fn identity(&self) -> serde_json::Value;
+    fn identity(&self) -> Identity;
 
     /// The formulations in which it can be searched, the preferred one first; empty where there is but one
     /// and it needs no name.
@@ -34,7 +35,7 @@ pub trait Subject: Send + Sync {
     }
 
     /// The problem in one of its formulations; `space` is empty where they need no name.
-    fn problem(&self, space: &str) -> Result<Arc<dyn Problem>, Unavailable>;
+    fn problem(&self, space: &str) -> Result<Arc<dyn Problem>, Failure>;
 
     /// The number of variables, whatever the formulation, so that formulations of one subject compare.
     fn dimension(&self) -> usize {
@@ -63,7 +64,7 @@ pub trait Subject: Send + Sync {
     }
 
     /// The problem in its preferred formulation.
-    fn start_problem(&self) -> Result<Arc<dyn Problem>, Unavailable> {
+    fn start_problem(&self) -> Result<Arc<dyn Problem>, Failure> {
         self.problem(self.spaces().first().map_or("", String::as_str))
     }
 
@@ -79,7 +80,7 @@ pub trait Subject: Send + Sync {
 
     /// A run's best point, evaluated as finely as can be: its cost and one value for each of
     /// [`measures`](Self::measures). None where the search's own cost is all there is to know.
-    fn judge(&self, space: &str, x: &[f64]) -> Result<Option<Judgement>, Unavailable> {
+    fn judge(&self, space: &str, x: &[f64]) -> Result<Option<Judgement>, Failure> {
         let _ = (space, x);
         Ok(None)
     }
@@ -123,18 +124,6 @@ pub trait Subject: Send + Sync {
     /// The subject itself, for exhibits that have to know more of their instances than this trait tells.
     fn as_any(&self) -> Option<&dyn Any> {
         None
-    }
-}
-
-/// A problem that this program does not have.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct Unavailable(String);
-
-impl Unavailable {
-    /// With the reason.
-    pub fn new(reason: impl Into<String>) -> Self {
-        Self(reason.into())
     }
 }
 

@@ -4,13 +4,12 @@ use std::num::{NonZeroU64, NonZeroUsize};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
 use toml::Spanned;
 
 use super::analytic::{Analytic, TestFunction};
-use crate::experiment::{Instance, Kind, Source, Subject, Unavailable};
+use crate::experiment::{Identity, Instance, Kind, Source, Subject};
 use crate::input::{Document, InputError, count, count_from};
-use crate::search::Problem;
+use crate::search::{Failure, Problem};
 
 /// What a `[functions]` table leaves out is taken from here.
 const DEFAULTS: &str = "[functions]\ndimension = [10]\ninstances = 1\n";
@@ -102,8 +101,8 @@ impl Source for FunctionsFile {
         self.functions.spelt_out(document)
     }
 
-    fn written(&self) -> Map<String, Value> {
-        crate::experiment::written(self)
+    fn written(&self) -> Result<String, String> {
+        toml::to_string(self).map_err(|error| error.to_string())
     }
 }
 
@@ -123,11 +122,11 @@ impl Subject for Function {
         self.problem.function().name()
     }
 
-    fn identity(&self) -> Value {
-        serde_json::json!({ "dimension": self.dimension, "instance": self.number })
+    fn identity(&self) -> Identity {
+        Identity::new().with("dimension", self.dimension).with("instance", self.number)
     }
 
-    fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Unavailable> {
+    fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Failure> {
         Ok(self.problem.clone())
     }
 

@@ -11,9 +11,9 @@ use super::fitness::Assessment;
 use super::subject::{DURATION, KIND, RESIDUAL, SAME_MOTION, SPACES, TaskSubject};
 use crate::exhibit::Exhibits;
 use crate::experiment::{
-    Instance, Judgement, Quantity, Results, Subject, Unavailable, Value, ValueKind,
+    Identity, Instance, Judgement, Quantity, Results, Subject, Value, ValueKind,
 };
-use crate::search::Problem;
+use crate::search::{Failure, Problem};
 
 impl Subject for TaskSubject {
     fn kind(&self) -> &'static str {
@@ -24,9 +24,9 @@ impl Subject for TaskSubject {
         KIND
     }
 
-    fn identity(&self) -> serde_json::Value {
+    fn identity(&self) -> Identity {
         let (accuracy, boxes) = (self.problem.accuracy(), &self.boxes);
-        json!({
+        Identity::of(json!({
             "task": &**self.problem.task(),
             "family": { "name": "sine-polynomial", "terms": self.problem.family().terms() },
             "accuracy": {
@@ -38,14 +38,14 @@ impl Subject for TaskSubject {
                 "duration": boxes.duration,
                 "alpha": boxes.alpha,
             },
-        })
+        }))
     }
 
     fn spaces(&self) -> Vec<String> {
         SPACES.map(str::to_owned).to_vec()
     }
 
-    fn problem(&self, space: &str) -> Result<Arc<dyn Problem>, Unavailable> {
+    fn problem(&self, space: &str) -> Result<Arc<dyn Problem>, Failure> {
         Ok(Arc::new(self.formulated(space)?))
     }
 
@@ -105,7 +105,7 @@ impl Subject for TaskSubject {
         ]
     }
 
-    fn judge(&self, space: &str, x: &[f64]) -> Result<Option<Judgement>, Unavailable> {
+    fn judge(&self, space: &str, x: &[f64]) -> Result<Option<Judgement>, Failure> {
         let (coefficients, motion) = self.formulated(space)?.certify(x);
         Ok(Some(Judgement { cost: motion.cost, measures: measured(&motion, coefficients) }))
     }

@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use serde_json::{Map, Value};
-
 use super::keys::{Sweep, TaskKeys};
 use super::settings::DEFAULTS;
 use super::subject::{KIND, SPACES};
 use super::sweep;
-use crate::experiment::{Instance, Kind, Source, written};
+use crate::experiment::{Instance, Kind, Source};
 use crate::input::{Document, InputError};
 use crate::robot::RobotFile;
 
@@ -40,8 +38,8 @@ impl Source for TaskKeys {
         sweep::instances(self, document)
     }
 
-    fn written(&self) -> Map<String, Value> {
-        written(self)
+    fn written(&self) -> Result<String, String> {
+        toml::to_string(self).map_err(|error| error.to_string())
     }
 
     fn sets_budgets(&self) -> bool {

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::fitness::Reorientation;
 use super::formulation::{Formulated, Formulation};
 use super::settings::Boxes;
-use crate::experiment::{Instance, Unavailable};
+use crate::experiment::Instance;
 use crate::lanes::Width;
-use crate::search::Problem as _;
+use crate::search::{Failure, Problem as _};
 
 /// The name of the kind.
 pub(super) const KIND: &str = "reorientation";
@@ -52,11 +52,11 @@ impl TaskSubject {
         Self { problem: Arc::new(self.problem.with_width(width)), boxes: self.boxes.clone() }
     }
 
-    pub(super) fn formulated(&self, space: &str) -> Result<Formulated, Unavailable> {
+    pub(super) fn formulated(&self, space: &str) -> Result<Formulated, Failure> {
         let formulation = Formulation::named(Some(space))
-            .ok_or_else(|| Unavailable::new(format!("the task has no formulation `{space}`")))?;
+            .ok_or_else(|| Failure::new(format!("the task has no formulation `{space}`")))?;
         Formulated::new(formulation, self.problem.clone(), &self.boxes)
-            .map_err(|error| Unavailable::new(error.to_string()))
+            .map_err(|error| Failure::new(error.to_string()))
     }
 
     /// The coefficients of a point.
