@@ -66,7 +66,7 @@ impl Reorientation {
     pub fn new(task: Arc<Task>, terms: usize, accuracy: Accuracy) -> Self {
         assert!(accuracy.attitude_steps > 0 && accuracy.peak_intervals > 0, "no accuracy at all");
         assert_eq!(task.limits.0.len(), task.robot.joint_count(), "limits for every joint");
-        let ranges: Vec<_> = task.robot.joints.iter().map(|j| j.range).collect();
+        let ranges: Vec<_> = task.robot.joints().map(|j| j.range).collect();
         let family = Family::new(&ranges, &task.start.joints, &task.goal.joints, terms);
         let tables = Tables::new(&task, &family, accuracy);
         Self { task, family, accuracy, tables, width: Width::widest() }

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use nalgebra::UnitQuaternion;
 
 use super::fitness::{Accuracy, Reorientation};
-use crate::attitude::{JointState, Midpoints, Rollout};
+use crate::attitude::{Midpoints, Rollout};
 use crate::lanes::{LaneWork, Lanes};
-use crate::momentum::Arm;
+use crate::momentum::{Arm, JointState};
 use crate::task::Task;
 use crate::trajectory::{ArchRoom, Family, Sampler, Samples, longest_asked};
 
