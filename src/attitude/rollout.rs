@@ -2,6 +2,8 @@
 
 use std::array::from_fn;
 
+use nalgebra::UnitQuaternion;
+
 use super::{GAUSS, gauss_moments, magnus};
 use crate::lanes::{Lanes, MOST};
 use crate::momentum::{Arm, JointState};
@@ -57,8 +59,7 @@ impl Rollout {
         (first / MOST * NODES + node) * MOST + first % MOST
     }
 
-    /// The rotation of the base over the whole path, from its attitude at the start, **along the mount's
-    /// axes**.
+    /// The rotation of the base over the whole path, from its attitude at the start, in base axes.
     ///
     /// The rotations of panels are multiplied in an order that does not depend on the number of lanes.
     #[inline(always)]
@@ -68,7 +69,7 @@ impl Rollout {
         family: &Family,
         coefficients: &[f64],
         joints: &mut Vec<JointState>,
-    ) -> Quat<f64> {
+    ) -> UnitQuaternion<f64> {
         joints.resize(NODES * family.joints(), JointState::default());
         let mut net = Quat::identity();
         for group in (0..self.panels).step_by(MOST) {
@@ -87,7 +88,8 @@ impl Rollout {
             }
             net = net.then(product(panels));
         }
-        net
+        let mount = arm.mount();
+        mount * UnitQuaternion::from(net) * mount.inverse()
     }
 
     /// Every joint's state at every node of the panels from `first` on.

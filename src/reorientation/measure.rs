@@ -120,8 +120,6 @@ impl LaneWork for Turn<'_> {
     #[inline(always)]
     fn run<T: Lanes>(self) -> UnitQuaternion<f64> {
         let (family, Tables { arm, rollout, .. }) = (self.problem.family(), self.problem.tables());
-        let net = rollout.net_rotation::<T>(arm, family, self.coefficients, self.joints);
-        let mount = arm.mount();
-        mount * UnitQuaternion::from(net) * mount.inverse()
+        rollout.net_rotation::<T>(arm, family, self.coefficients, self.joints)
     }
 }
