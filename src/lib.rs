@@ -27,54 +27,96 @@
 //! "Non-Holonomic Path Planning for Space Robots Based on Jerk Constraints", Int. J. Astronaut.
 //! Aeronautical Eng. 8:065; what is misprinted there is said where it matters.
 //!
-//! # Example
+//! # Plan a motion
+//!
+//! A [`Problem`](search::Problem) is a box and a cost; an [`Optimiser`](optimiser::Optimiser) asks an
+//! [`Oracle`](search::Oracle) for costs, which counts them and keeps the best.
 //!
 //! ```
-//! use driftless::reorientation::{Accuracy, TaskFile};
+//! use std::{num::NonZeroUsize, sync::Arc};
 //!
-//! let document = TaskFile::paper();
-//! let (problem, _) = TaskFile::read(&document)?.build(&document)?;
-//! let straight = vec![0.0; problem.family().dimension()];
-//! let motion = problem.with_accuracy(Accuracy::FINE).assess(&straight, None);
-//! assert!(motion.duration < 4.0 && motion.residual().to_degrees() > 10.0);
-//! # Ok::<(), driftless::input::InputError>(())
+//! use driftless::optimiser::{Optimiser as _, Scp};
+//! use driftless::reorientation::{Formulated, Formulation, TaskFile};
+//! use driftless::search::{Oracle, Rng, Watch};
+//!
+//! let document = TaskFile::paper(); // `Document::read` takes a file instead
+//! let (task, boxes) = TaskFile::read(&document)?.build(&document)?;
+//! let problem = Formulated::new(Formulation::TimeFree, Arc::new(task), &boxes)?;
+//! let watch = Watch::default();
+//! let mut oracle = Oracle::new(&problem, 20_000, &watch);
+//! let scp = Scp { starts: NonZeroUsize::new(10), ..Scp::default() };
+//! scp.minimise(&mut oracle, &mut Rng::new(1))?;
+//! let best = oracle.best().expect("a motion");
+//! let (_, motion) = problem.certify(&best.x);
+//! assert!(motion.duration < 8.0 && motion.residual().to_degrees() < 1e-4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+#![cfg_attr(feature = "harness", doc = include_str!("harness.md"))]
+//!
+//! # Features
+//!
+//! `harness` (default): experiments, stored results, tables and figures. `cli` (default): the command `driftless`.
+//! Without both: the planner, the optimisers and the test functions.
 
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[cfg(feature = "harness")]
-pub mod analysis;
-pub mod attitude;
-#[cfg(feature = "cli")]
-pub mod cli;
-pub mod digest;
-#[cfg(feature = "harness")]
 pub mod exhibit;
 #[cfg(feature = "harness")]
 pub mod experiment;
-#[cfg(feature = "harness")]
-pub mod export;
-#[cfg(feature = "harness")]
-pub mod figure;
 pub mod functions;
 pub mod input;
-pub mod kinematics;
-pub mod lanes;
-pub mod momentum;
 pub mod optimiser;
-pub mod output;
-#[cfg(feature = "harness")]
-pub mod plot;
-pub mod posture;
-#[cfg(feature = "harness")]
-pub mod registry;
 pub mod reorientation;
 #[cfg(feature = "harness")]
 pub mod report;
 pub mod robot;
-pub mod scalar;
 pub mod search;
-pub mod so3;
 pub mod task;
+
+#[cfg(feature = "harness")]
+mod registry;
+#[cfg(feature = "harness")]
+pub use registry::registry;
+
+// What the command, the tests and the benchmarks of this repository use beside: it may change in any version.
+#[cfg(feature = "harness")]
+#[doc(hidden)]
+pub mod analysis;
+#[doc(hidden)]
+pub mod attitude;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
+#[cfg(feature = "harness")]
+#[doc(hidden)]
+pub mod export;
+#[doc(hidden)]
+pub mod kinematics;
+#[doc(hidden)]
+pub mod lanes;
+#[doc(hidden)]
+pub mod momentum;
+#[doc(hidden)]
+pub mod posture;
+#[doc(hidden)]
+pub mod scalar;
+#[doc(hidden)]
+pub mod so3;
+#[doc(hidden)]
 pub mod trajectory;
+#[doc(hidden)]
 pub mod vec3;
+
+mod digest;
+#[cfg(feature = "harness")]
+mod figure;
+mod output;
+#[cfg(feature = "harness")]
+mod plot;
+
+/// Jacobians of a free-floating robot (eqs. 1–7).
+pub mod jacobian {
+    pub use crate::kinematics::{Jacobian, base_jacobian, manipulator_jacobian};
+    pub use crate::momentum::{base_map, generalised_jacobian};
+}

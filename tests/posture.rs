@@ -4,8 +4,8 @@ use driftless::kinematics::{Outward, tool};
 use driftless::momentum::base_twist;
 use driftless::posture::Posture;
 use driftless::reorientation::{Motion, Reorientation, TaskFile};
-use driftless::robot::Robot;
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use driftless::robot::{Placement, Robot, Tool};
+use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
 fn paper() -> Reorientation {
     let document = TaskFile::paper();
@@ -14,9 +14,22 @@ fn paper() -> Reorientation {
 
 /// The paper's arm with so many joints: some of its own, or some of them again.
 fn arm(count: usize) -> Robot {
-    let mut robot = Robot::clone(&paper().task().robot);
-    robot.joints = robot.joints.iter().cycle().take(count).cloned().collect();
-    robot
+    let robot = Robot::clone(&paper().task().robot);
+    // Where each row of the table leads: to the next link, or to the tool.
+    let steps: Vec<&Placement> = robot.links()[1..]
+        .iter()
+        .map(|link| &link.placement)
+        .chain([&robot.tool().placement])
+        .collect();
+    let row = |i: usize| steps[i % steps.len()].clone();
+    let links = (0..count).map(|i| {
+        let mut link = robot.links()[i % steps.len()].clone();
+        link.parent = i.checked_sub(1);
+        link.placement = link.parent.map_or_else(|| robot.mount().clone(), row);
+        link
+    });
+    let tool = Tool { link: Some(count - 1), placement: row(count - 1) };
+    Robot::new("arm".to_owned(), robot.base().clone(), links.collect(), tool).unwrap()
 }
 
 fn motion(intervals: usize) -> (Robot, Motion) {
@@ -42,11 +55,11 @@ fn the_centre_of_mass_is_the_origin_throughout() {
     for (i, posture) in postures(&robot, &motion).iter().enumerate() {
         let position = Vector3::from(posture.position);
         let angles: Vec<f64> = motion.joints.iter().map(|j| j.derivatives[i][0]).collect();
-        let links = Outward::new(&robot, &angles).map(|link| {
+        let links = Outward::<_>::new(&robot, &angles).map(|link| {
             let centre = position + motion.base[i] * Vector3::from(link.centre_of_mass);
-            centre * link.joint.link.mass
+            centre * link.link.body.mass
         });
-        let moment = position * robot.base.mass + links.sum::<Vector3<f64>>();
+        let moment = position * robot.base().mass + links.sum::<Vector3<f64>>();
         assert!(moment.norm() < 1e-12, "posture {i}: {moment}");
     }
 }
@@ -80,18 +93,27 @@ fn joints_are_where_the_rows_put_them() {
     for count in 1..10 {
         let robot = arm(count);
         let posture = Posture::of(&robot, &vec![0.0; count], UnitQuaternion::identity());
-        let mut pose = Isometry3::from_parts(
-            Translation3::from(robot.mount),
-            UnitQuaternion::from_rotation_matrix(&robot.mount_rotation),
-        );
-        for (i, joint) in robot.joints.iter().enumerate() {
+        let mut pose = robot.mount().isometry();
+        // The table of `robot/xiao2023.toml`.
+        let rows = [
+            [0.0, 0.115, 0.0, 90.0],
+            [90.0, -0.115, 0.0, 90.0],
+            [0.0, 0.775, 0.0, -90.0],
+            [-90.0, 0.24, 0.875, 0.0],
+            [0.0, -0.115, 0.0, 90.0],
+            [0.0, 0.115, 0.0, 0.0],
+        ];
+        for i in 0..count {
             let axis = pose * Vector3::z();
             assert!((Vector3::from(posture.axes[i]) - axis).norm() < 1e-14);
             assert!((Vector3::from(posture.origins[i]) - pose.translation.vector).norm() < 1e-14);
-            let [offset, twist] = [joint.dh.offset, joint.dh.twist].map(|(s, c)| s.atan2(c));
-            let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * offset)
-                * UnitQuaternion::from_scaled_axis(Vector3::x() * twist);
-            pose *= Isometry3::from_parts(Translation3::from(joint.dh.step), turn);
+            let [offset, d, a, twist] = rows[i % rows.len()];
+            let about = |axis: Vector3<f64>, degrees: f64| {
+                UnitQuaternion::from_scaled_axis(axis * degrees.to_radians())
+            };
+            pose *= about(Vector3::z(), offset);
+            pose *= Translation3::new(a, 0.0, d);
+            pose *= about(Vector3::x(), twist);
         }
         let tip = Vector3::from(posture.origins[count]);
         assert!((tip - pose.translation.vector).norm() < 1e-14);

@@ -50,7 +50,7 @@ fn largest_share(coefficients: &[f64], duration: f64) -> f64 {
     const LIMITS: [f64; 3] = [60.0, 70.0, 80.0];
     let problem = task("");
     let mut largest = 0.0_f64;
-    for (j, joint) in problem.task().task().robot.joints.iter().enumerate() {
+    for (j, joint) in problem.task().task().robot.joints().enumerate() {
         let [low, high] = joint.range;
         let (amplitude, centre) = ((high - low) / 2.0, f64::midpoint(low, high));
         let phase = |deg: f64| ((deg.to_radians() - centre) / amplitude).asin();

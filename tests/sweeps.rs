@@ -9,7 +9,7 @@ use driftless::experiment::{
 };
 use driftless::input::Document;
 use driftless::optimiser::{Ending, Scp};
-use driftless::registry::registry;
+use driftless::registry;
 use driftless::reorientation::{
     BestKnown, Formulated, Formulation, Reorientation, TaskFile, TaskSubject,
 };
@@ -184,7 +184,7 @@ fn random_poses_are_within_their_bounds() {
         assert!(turn <= 25.0 + 1e-6, "{turn}");
         furthest = furthest.max(turn);
         for (joint, (start, goal)) in
-            task.robot.joints.iter().zip(task.start.joints.iter().zip(&task.goal.joints))
+            task.robot.joints().zip(task.start.joints.iter().zip(&task.goal.joints))
         {
             let [lower, upper] = joint.range;
             let (middle, half) = (f64::midpoint(lower, upper), 0.8 * (upper - lower) / 2.0);

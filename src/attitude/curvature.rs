@@ -169,7 +169,7 @@ mod tests {
     fn idle_lanes_add_nothing() {
         let document = Robot::embedded("xiao2023").unwrap();
         let robot = Robot::from_document(&document).unwrap();
-        let ranges: Vec<_> = robot.joints.iter().map(|joint| joint.range).collect();
+        let ranges: Vec<_> = robot.joints().map(|joint| joint.range).collect();
         let (start, goal) = ([0.2, 0.5, 0.8, -0.3, -0.4, 0.7], [0.7, 1.0, 1.5, -0.2, -0.5, 1.0]);
         let family = Family::new(&ranges, &start, &goal, 2);
         let coefficients: Vec<f64> = (0..12).map(|i| 0.03 * f64::from(i) - 0.2).collect();

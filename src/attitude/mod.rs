@@ -10,7 +10,7 @@ mod rollout;
 mod slopes;
 
 pub use curvature::{Midpoints, RotationCurvature};
-pub use rollout::{JointState, Rollout};
+pub use rollout::Rollout;
 pub use slopes::RotationSlopes;
 
 use std::ops::{Add, Mul, Sub};

@@ -68,7 +68,7 @@ impl<'a, T: Lanes> Evaluator<'a, T> {
             by_phase_rate: Vec::with_capacity(phases.len()),
         };
         for (joint, at) in self.joints.iter().enumerate() {
-            let (by_angle, by_rate) = (self.slopes.by_angle[joint], self.slopes.by_rate[joint]);
+            let (by_angle, by_rate) = (self.slopes.by_position[joint], self.slopes.by_rate[joint]);
             node.by_phase.push(by_angle * at.angle_slope + by_rate * at.rate_slope);
             node.by_phase_rate.push(by_rate * at.angle_slope);
         }

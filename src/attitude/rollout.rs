@@ -2,10 +2,11 @@
 
 use std::array::from_fn;
 
+use nalgebra::UnitQuaternion;
+
 use super::{GAUSS, gauss_moments, magnus};
-use crate::lanes::{Block, Lanes, MOST};
-use crate::momentum::{Arm, Outer};
-use crate::scalar::{Pair, Scalar as _};
+use crate::lanes::{Lanes, MOST};
+use crate::momentum::{Arm, JointState};
 use crate::so3::{self, Quat};
 use crate::trajectory::{Family, Grid};
 use crate::vec3::Vec3;
@@ -58,8 +59,7 @@ impl Rollout {
         (first / MOST * NODES + node) * MOST + first % MOST
     }
 
-    /// The rotation of the base over the whole path, from its attitude at the start, **along the mount's
-    /// axes**.
+    /// The rotation of the base over the whole path, from its attitude at the start, in base axes.
     ///
     /// The rotations of panels are multiplied in an order that does not depend on the number of lanes.
     #[inline(always)]
@@ -69,7 +69,7 @@ impl Rollout {
         family: &Family,
         coefficients: &[f64],
         joints: &mut Vec<JointState>,
-    ) -> Quat<f64> {
+    ) -> UnitQuaternion<f64> {
         joints.resize(NODES * family.joints(), JointState::default());
         let mut net = Quat::identity();
         for group in (0..self.panels).step_by(MOST) {
@@ -78,12 +78,7 @@ impl Rollout {
                 self.drive::<T>(arm, family, coefficients, group + part, joints);
                 let mut rates = [Vec3::zero(); NODES];
                 for (rate, joints) in rates.iter_mut().zip(joints.chunks_exact(family.joints())) {
-                    let mut outer = Outer::nothing();
-                    for (link, state) in arm.links().iter().zip(joints).rev() {
-                        let [sin, cos, rate] = state.load();
-                        outer = link.inward(outer, (sin, cos), rate);
-                    }
-                    *rate = arm.base_rate::<T>(outer);
+                    *rate = arm.base_rate::<T>(joints);
                 }
                 let mut panel = Quat::identity();
                 for step in &self.moments {
@@ -93,7 +88,8 @@ impl Rollout {
             }
             net = net.then(product(panels));
         }
-        net
+        let mount = arm.mount();
+        mount * UnitQuaternion::from(net) * mount.inverse()
     }
 
     /// Every joint's state at every node of the panels from `first` on.
@@ -112,35 +108,16 @@ impl Rollout {
         for (pair, states) in joints.chunks_exact_mut(2 * family.joints()).enumerate() {
             let (near, far) = states.split_at_mut(family.joints());
             let places = [2 * pair, 2 * pair + 1].map(|node| Self::place(first, node));
-            for (joint, link) in arm.links().iter().enumerate() {
+            for (place, link) in arm.links().iter().enumerate() {
+                let joint = link.joint();
                 let coefficients = family.of_joint(joint, coefficients);
                 let phases = family.phases::<T, 2>(&self.grid, places, joint, coefficients);
                 let at = family.at_phase(joint, phases);
-                let (sin, cos) = (at.angle + Pair::of(link.offset())).sin_cos();
-                near[joint].store([sin.0, cos.0, at.rate.0]);
-                far[joint].store([sin.1, cos.1, at.rate.1]);
+                let [a, b, c] = link.state(at.angle, at.rate);
+                near[place].store([a.0, b.0, c.0]);
+                far[place].store([a.1, b.1, c.1]);
             }
         }
-    }
-}
-
-/// Sine and cosine of one joint's angle with its DH offset, and its rate by `τ` \[rad\], one time a lane.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct JointState([Block; 3]);
-
-impl JointState {
-    #[inline(always)]
-    fn load<T: Lanes>(&self) -> [T; 3] {
-        let [a, b, c] = &self.0;
-        [T::load(&a.0), T::load(&b.0), T::load(&c.0)]
-    }
-
-    #[inline(always)]
-    fn store<T: Lanes>(&mut self, [x, y, z]: [T; 3]) {
-        let [a, b, c] = &mut self.0;
-        x.store(&mut a.0);
-        y.store(&mut b.0);
-        z.store(&mut c.0);
     }
 }
 

@@ -30,7 +30,7 @@ struct Panels<T> {
 }
 
 impl Rollout {
-    /// [`net_rotation`](Self::net_rotation), in base axes, with its derivatives.
+    /// [`net_rotation`](Self::net_rotation) with its derivatives.
     ///
     /// A change of the rotation vector `Ω` of one step turns the end by `Qᵀ J(Ω) dΩ`, where `J` is the
     /// right Jacobian and `Q` the rotation of all steps that follow.

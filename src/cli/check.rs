@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{CliError, warn_of};
 use crate::input::{Document, InputError};
 use crate::reorientation::{ReplayFile, TaskFile};
-use crate::robot::{Robot, RobotFile};
+use crate::robot::RobotFile;
 
 /// Say what is wrong with an input file, or print it resolved
 #[derive(Debug, Args)]
@@ -59,7 +59,7 @@ impl Check {
             Kind::Robot => {
                 let file = RobotFile::read(&document)?;
                 print_resolved("robot", &file)?;
-                warn_of(&Robot::from(file));
+                warn_of(&file.build(&document)?);
             }
             Kind::Replay => {
                 let file = ReplayFile::read(&document)?;

@@ -145,7 +145,7 @@ impl fmt::Display for Told<'_> {
         writeln!(f, "  penalty        {:.6}", assessment.penalty())?;
         writeln!(f, "  joint          rate [°/s]     acceleration [°/s²]   jerk [°/s³]")?;
         let task = problem.task();
-        let joints = task.robot.joints.iter().zip(&assessment.peaks.0).zip(&task.limits.0);
+        let joints = task.robot.joints().zip(&assessment.peaks.0).zip(&task.limits.0);
         for ((joint, peaks), limits) in joints {
             write!(f, "  {:<12}", joint.name)?;
             for (peak, limit) in peaks.iter().zip(limits) {
@@ -155,7 +155,7 @@ impl fmt::Display for Told<'_> {
             writeln!(f)?;
         }
         let largest = |k: usize| {
-            let all = task.robot.joints.iter().zip(&assessment.peaks.0);
+            let all = task.robot.joints().zip(&assessment.peaks.0);
             all.max_by(|a, b| a.1[k].value.total_cmp(&b.1[k].value))
         };
         if let Some((joint, peaks)) = largest(2) {

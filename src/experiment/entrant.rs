@@ -108,7 +108,7 @@ impl Entrant {
             budget: None,
             optimiser: Some(Arc::new(optimiser)),
             catalogued: None,
-            is_labelled: true,
+            is_labelled: false,
         }
     }
 
@@ -192,7 +192,7 @@ impl OutsideTable {
             budget: None,
             optimiser: None,
             catalogued: None,
-            is_labelled: true,
+            is_labelled: false,
         })
     }
 }

@@ -1,9 +1,10 @@
 //! How the base answers the joints when total momentum is zero (eqs. 5–7), in base axes.
 
 mod arm;
+mod assembly;
 mod slopes;
 
-pub use arm::{Arm, ArmLink, Outer};
+pub use arm::{Arm, ArmLink, JointState};
 pub use slopes::RateSlopes;
 
 use std::ops::{AddAssign, Mul, SubAssign};
@@ -11,7 +12,7 @@ use std::ops::{AddAssign, Mul, SubAssign};
 use nalgebra::Vector6;
 
 use crate::kinematics::{Jacobian, LinkPose, Outward, base_jacobian, manipulator_jacobian};
-use crate::robot::{Body, Robot};
+use crate::robot::{Body, Inherited, Joint, Robot};
 use crate::scalar::Scalar;
 use crate::vec3::{Sym3, Vec3};
 
@@ -24,49 +25,78 @@ pub struct Twist<T> {
     pub angular: Vec3<T>,
 }
 
-/// The base's twist for joint angles \[rad\] and rates \[rad/s\] with zero total momentum.
+/// The base's twist for joint positions \[rad or m\] and rates \[rad/s or m/s\] with zero total momentum.
 ///
 /// One outward sweep with the base held still gives the arm's momentum and the composite inertia;
 /// about the system's centre of mass the angular part then stands alone, a 3×3 solve.
 #[inline(always)]
-pub fn base_twist<T: Scalar>(robot: &Robot, angles: &[T], rates: &[T]) -> Twist<T> {
-    let (balance, momentum) = sweep(robot, angles, rates, |_| {});
+pub fn base_twist<T: Scalar>(robot: &Robot, positions: &[T], rates: &[T]) -> Twist<T> {
+    let (balance, momentum) = if robot.is_plain() {
+        sweep::<T, true>(robot, positions, rates, |_| {})
+    } else {
+        sweep::<T, false>(robot, positions, rates, |_| {})
+    };
     balance.twist(&momentum)
 }
 
 /// One link with the base held still.
 #[derive(Debug, Clone)]
-struct Link<T> {
-    /// The twist for unit rate of its joint.
+struct MovedLink<T> {
+    /// The twist for unit rate of its joint, zero where that is fixed.
     screw: Twist<T>,
     twist: Twist<T>,
     body: RigidBody<T>,
 }
 
-/// The outward sweep with the base held still: the whole system and the arm's momentum; `each` is told
+/// The outward sweep with the base held still: the whole system and the links' momentum; `each` is told
 /// every link.
 #[inline(always)]
-fn sweep<T: Scalar>(
+fn sweep<T: Scalar, const PLAIN: bool>(
     robot: &Robot,
-    angles: &[T],
+    positions: &[T],
     rates: &[T],
-    mut each: impl FnMut(Link<T>),
+    mut each: impl FnMut(MovedLink<T>),
 ) -> (Balance<T>, Momentum<T>) {
     let mut system = RigidBody::base(robot);
     let mut momentum = Momentum::zero();
-    let mut twist = Twist::zero();
-    let mut outward = Outward::new(robot, angles);
-    for &rate in rates {
-        // Not by `zip`, which would not be inlined.
+    let mut twists = Inherited::new(robot, Twist::zero());
+    let mut outward = Outward::<T, PLAIN>::new(robot, positions);
+    let mut joint = 0;
+    for i in 0..robot.links().len() {
+        // Not by `for link in outward`, which would not be inlined.
         let Some(link) = outward.next() else { break };
-        let screw = Twist { linear: link.proximal.position.cross(link.axis), angular: link.axis };
-        twist += screw * rate;
+        let screw = link.screw::<PLAIN>();
+        if PLAIN {
+            twists.current += screw * rates[i];
+        } else {
+            twists.enter(robot, i);
+            if link.link.joint.axis().is_some() {
+                twists.current += screw * rates[joint];
+                joint += 1;
+            }
+            twists.leave(robot, i);
+        }
+        let twist = twists.current;
         let body = RigidBody::link(&link);
         momentum += body.momentum(&twist);
         system += body;
-        each(Link { screw, twist, body });
+        each(MovedLink { screw, twist, body });
     }
     (system.balance(), momentum)
+}
+
+impl<T: Scalar> LinkPose<'_, T> {
+    /// The twist for unit rate of the link's joint, zero where that is fixed.
+    #[inline(always)]
+    fn screw<const PLAIN: bool>(&self) -> Twist<T> {
+        let turn = Twist { linear: self.frame.position.cross(self.axis), angular: self.axis };
+        match self.link.joint {
+            _ if PLAIN => turn,
+            Joint::Revolute(_) => turn,
+            Joint::Prismatic(_) => Twist { linear: self.axis, angular: Vec3::zero() },
+            Joint::Fixed => Twist::zero(),
+        }
+    }
 }
 
 impl<T: Scalar> Twist<T> {
@@ -160,19 +190,16 @@ impl<T: Scalar> RigidBody<T> {
 
     #[inline(always)]
     fn base(robot: &Robot) -> Self {
-        let Body { mass, inertia } = &robot.base;
+        let Body { mass, inertia } = robot.base();
         Self { mass: *mass, first_moment: Vec3::zero(), inertia: Sym3::of(inertia) }
     }
 
     #[inline(always)]
     fn link(link: &LinkPose<'_, T>) -> Self {
-        let Body { mass, inertia } = link.joint.link;
+        let Body { mass, inertia } = link.link.body;
         let first_moment = link.centre_of_mass.times(mass);
-        let mut body = Self {
-            mass,
-            first_moment,
-            inertia: link.proximal.rotation.congruent(Sym3::of(&inertia)),
-        };
+        let mut body =
+            Self { mass, first_moment, inertia: link.frame.rotation.congruent(Sym3::of(&inertia)) };
         body.inertia += Sym3::point(link.centre_of_mass, first_moment);
         body
     }
@@ -237,13 +264,13 @@ impl<T: Scalar> Balance<T> {
 }
 
 /// `J_bm` of eq. 7 (with the sign the paper drops): the base's twist for unit rate of each joint.
-pub fn base_map(robot: &Robot, angles: &[f64]) -> Jacobian {
+pub fn base_map(robot: &Robot, positions: &[f64]) -> Jacobian {
     let n = robot.joint_count();
     let mut rates = vec![0.0; n];
     let mut map = Jacobian::zeros(n);
     for (i, mut column) in map.column_iter_mut().enumerate() {
         rates[i] = 1.0;
-        let Twist { linear: v, angular: w } = base_twist(robot, angles, &rates);
+        let Twist { linear: v, angular: w } = base_twist(robot, positions, &rates);
         rates[i] = 0.0;
         column.copy_from(&Vector6::new(v.x, v.y, v.z, w.x, w.y, w.z));
     }
@@ -251,34 +278,45 @@ pub fn base_map(robot: &Robot, angles: &[f64]) -> Jacobian {
 }
 
 /// `J_g = J_m + J_b J_bm`: the tool's twist for the joint rates while the base floats.
-pub fn generalised_jacobian(robot: &Robot, angles: &[f64]) -> Jacobian {
-    manipulator_jacobian(robot, angles) + base_jacobian(robot, angles) * base_map(robot, angles)
+pub fn generalised_jacobian(robot: &Robot, positions: &[f64]) -> Jacobian {
+    manipulator_jacobian(robot, positions)
+        + base_jacobian(robot, positions) * base_map(robot, positions)
 }
 
 /// Total linear \[N·s\] and angular momentum about the base's centre of mass \[N·m·s\], term by term
 /// as in eq. 5; zero for the twist that [`base_twist`] gives.
 pub fn total_momentum(
     robot: &Robot,
-    angles: &[f64],
+    positions: &[f64],
     rates: &[f64],
     base: &Twist<f64>,
 ) -> (Vec3<f64>, Vec3<f64>) {
-    let velocity = |r: Vec3<f64>| base.linear + base.angular.cross(r);
-    let mut linear = base.linear * robot.base.mass;
-    let mut angular = Sym3::of(&robot.base.inertia) * base.angular;
-    let links: Vec<_> = Outward::new(robot, angles).collect();
+    let mut linear = base.linear * robot.base().mass;
+    let mut angular = Sym3::of(&robot.base().inertia) * base.angular;
+    let links: Vec<_> = Outward::<_>::new(robot, positions).collect();
+    let mut own_rates = vec![0.0; links.len()];
+    for (joint, rate) in robot.joints().zip(rates) {
+        own_rates[joint.link] = *rate;
+    }
     for (i, link) in links.iter().enumerate() {
         let r = link.centre_of_mass;
-        let (mut v, mut w) = (velocity(r), base.angular);
-        for (inner, &rate) in links[..=i].iter().zip(rates) {
-            v += (inner.axis * rate).cross(r - inner.proximal.position);
-            w += inner.axis * rate;
+        let (mut v, mut w) = (base.linear + base.angular.cross(r), base.angular);
+        for inner in robot.chain_to(i) {
+            let (joint, rate) = (&links[inner], own_rates[inner]);
+            match joint.link.joint {
+                Joint::Revolute(_) => {
+                    v += (joint.axis * rate).cross(r - joint.frame.position);
+                    w += joint.axis * rate;
+                }
+                Joint::Prismatic(_) => v += joint.axis * rate,
+                Joint::Fixed => {}
+            }
         }
-        let rotation = link.proximal.rotation;
-        let momentum = v * link.joint.link.mass;
+        let rotation = link.frame.rotation;
+        let momentum = v * link.link.body.mass;
         let spin = rotation.tr_mul(w);
         linear += momentum;
-        angular += rotation * (Sym3::of(&link.joint.link.inertia) * spin) + r.cross(momentum);
+        angular += rotation * (Sym3::of(&link.link.body.inertia) * spin) + r.cross(momentum);
     }
     (linear, angular)
 }

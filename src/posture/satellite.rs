@@ -68,13 +68,13 @@ impl Satellite {
     /// The solid box of the base's mass whose moments of inertia about the base's axes are the base's,
     /// `e_k² = 6 (I_i + I_j − I_k) / m`, stretched or shrunk until the arm's mount lies on a face of it.
     pub fn of(robot: &Robot) -> Self {
-        let (mass, inertia) = (robot.base.mass, robot.base.inertia);
+        let (mass, inertia) = (robot.base().mass, robot.base().inertia);
         let squared = |k: usize| 6.0 * (inertia.trace() - 2.0 * inertia[(k, k)]) / mass;
         let mean = (6.0 * inertia.trace() / (3.0 * mass)).sqrt();
         // An inertia that no solid body has would give an edge of no length.
         let mut half: [f64; 3] =
             std::array::from_fn(|k| 0.5 * squared(k).max(0.1 * mean * mean).sqrt());
-        let mount: [f64; 3] = robot.mount.into();
+        let mount: [f64; 3] = (*robot.mount().translation()).into();
         let ratio = |k: usize| mount[k].abs() / half[k];
         let face = (0..3).fold(2, |face, k| if ratio(k) > ratio(face) { k } else { face });
         for (k, half) in half.iter_mut().enumerate() {
@@ -92,14 +92,16 @@ impl Satellite {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::Document;
 
     /// A solid box of 2 × 3 × 4 m and 120 kg has `I = 10 (9 + 16, 4 + 16, 4 + 9)` (any textbook).
     #[test]
     fn a_solid_box_is_found_again() {
-        let mut robot = Robot::from_document(&Robot::embedded("xiao2023").unwrap()).unwrap();
-        robot.base.mass = 120.0;
-        robot.base.inertia = nalgebra::Matrix3::from_diagonal(&[250.0, 200.0, 130.0].into());
-        robot.mount = [0.2, -1.5, 0.0].into();
+        let text = "name = 'box'\n[base]\nmass = 120\nmount = [0.2, -1.5, 0]\n\
+             inertia = { xx = 250, yy = 200, zz = 130 }\n\
+             [[joint]]\ndh = { a = 0, d = 1, alpha_deg = 0 }\nrange_deg = [-90, 90]\nmass = 1\n\
+             centre_of_mass = [0, 0, 0]\ninertia = { xx = 1, yy = 1, zz = 1 }\n";
+        let robot = Robot::from_document(&Document::embedded("box.toml", text)).unwrap();
         let satellite = Satellite::of(&robot);
         for (found, expected) in satellite.half.iter().zip([1.0, 1.5, 2.0]) {
             assert!((found - expected).abs() < 1e-12, "{:?}", satellite.half);

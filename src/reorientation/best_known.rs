@@ -6,16 +6,13 @@
 use std::fmt;
 use std::sync::LazyLock;
 
-use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use super::fitness::{Accuracy, Assessment, Reorientation};
 use crate::digest::digest;
 use crate::input::{Document, InputError};
-use crate::robot::Robot;
 use crate::task::{Task, TaskTable};
-use crate::trajectory::Limits;
 
 /// Share of the best known cost that tells a better motion from the same one.
 const SAME: f64 = 1e-6;
@@ -140,40 +137,31 @@ impl fmt::Display for BestKnown {
 }
 
 /// What the least cost of a task over a family follows from: the [`digest`] of a JSON text with sorted
-/// keys and without names, numbers rounded to nine significant digits, of the robot, the joints' angles
-/// at both ends, the turn of the base from start to goal, the limits, `K_b` and the number of terms.
+/// keys, numbers rounded to nine significant digits, of [`Robot::identity`](crate::robot::Robot::identity),
+/// the joints' positions at both ends, the turn of the base from start to goal, the limits, `K_b` and the number of terms.
 ///
 /// Boxes and accuracies are those of a search, not of the task.
 pub fn fingerprint(problem: &Reorientation) -> String {
-    #[derive(Serialize)]
-    struct Determinants<'a> {
-        robot: &'a Robot,
-        start: &'a [f64],
-        goal: &'a [f64],
-        turn: UnitQuaternion<f64>,
-        limits: &'a Limits,
-        base_weight: f64,
-        terms: usize,
-    }
     let Task { robot, start, goal, limits, base_weight } = &**problem.task();
     let turn = start.base.inverse() * goal.base;
-    let mut components = [turn.w, turn.i, turn.j, turn.k].into_iter();
-    let first = components.find(|component| component.abs() >= ZERO).unwrap_or_default();
-    let determinants = Determinants {
-        robot,
-        start: &start.joints,
-        goal: &goal.joints,
-        // Of the two quaternions for one turn, the one whose first component, the real part before the
-        // others, is positive.
-        turn: if first < 0.0 { UnitQuaternion::new_unchecked(-turn.into_inner()) } else { turn },
-        limits,
-        base_weight: *base_weight,
-        terms: problem.family().terms(),
-    };
-    digest(&canonical(serde_json::to_value(determinants).unwrap_or_default()).to_string())
+    let components = [turn.w, turn.i, turn.j, turn.k];
+    let first = components.into_iter().find(|component| component.abs() >= ZERO);
+    // Of the two quaternions for one turn, the one whose first component, the real part before the
+    // others, is positive.
+    let sign = if first.is_some_and(|first| first < 0.0) { -1.0 } else { 1.0 };
+    let determinants = json!({
+        "robot": robot.identity(),
+        "start": start.joints,
+        "goal": goal.joints,
+        "turn": components.map(|component| sign * component),
+        "limits": limits.0,
+        "base_weight": base_weight,
+        "terms": problem.family().terms(),
+    });
+    digest(&canonical(determinants).to_string())
 }
 
-/// Keys sorted, names left out, numbers rounded.
+/// Keys sorted, numbers rounded.
 fn canonical(value: Value) -> Value {
     match value {
         Value::Number(number) => {
@@ -183,7 +171,7 @@ fn canonical(value: Value) -> Value {
         }
         Value::Array(values) => values.into_iter().map(canonical).collect(),
         Value::Object(map) => {
-            let mut entries: Vec<_> = map.into_iter().filter(|(key, _)| key != "name").collect();
+            let mut entries: Vec<_> = map.into_iter().collect();
             entries.sort_by(|a, b| a.0.cmp(&b.0));
             let entries = entries.into_iter().map(|(key, value)| (key, canonical(value)));
             Value::Object(entries.collect::<Map<_, _>>())

@@ -1,7 +1,7 @@
 //! The fitness of the paper (eqs. 18, 20, 25–28, 33): turn the base, soon, within limits.
 
 use std::array::from_fn;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
@@ -36,9 +36,11 @@ impl Accuracy {
 #[derive(Debug, Clone)]
 pub struct Reorientation {
     task: Arc<Task>,
-    family: Family,
+    family: Arc<Family>,
     accuracy: Accuracy,
     tables: Arc<Tables>,
+    /// Those of [`Accuracy::FINE`], made when first asked for, for this problem and all its clones.
+    fine: Arc<OnceLock<Arc<Tables>>>,
     width: Width,
 }
 
@@ -66,16 +68,24 @@ impl Reorientation {
     pub fn new(task: Arc<Task>, terms: usize, accuracy: Accuracy) -> Self {
         assert!(accuracy.attitude_steps > 0 && accuracy.peak_intervals > 0, "no accuracy at all");
         assert_eq!(task.limits.0.len(), task.robot.joint_count(), "limits for every joint");
-        let ranges: Vec<_> = task.robot.joints.iter().map(|j| j.range).collect();
+        let ranges: Vec<_> = task.robot.joints().map(|j| j.range).collect();
         let family = Family::new(&ranges, &task.start.joints, &task.goal.joints, terms);
         let tables = Tables::new(&task, &family, accuracy);
-        Self { task, family, accuracy, tables, width: Width::widest() }
+        let fine = OnceLock::new();
+        if accuracy == Accuracy::FINE {
+            let _ = fine.set(tables.clone());
+        }
+        let (family, fine) = (Arc::new(family), Arc::new(fine));
+        Self { task, family, accuracy, tables, fine, width: Width::widest() }
     }
 
-    /// The same problem, evaluated more or less finely.
+    /// The same problem, evaluated more or less finely. Tables for [`Accuracy::FINE`] are made once for all
+    /// clones.
     #[must_use]
     pub fn with_accuracy(&self, accuracy: Accuracy) -> Self {
-        let tables = Tables::new(&self.task, &self.family, accuracy);
+        let make = || Tables::new(&self.task, &self.family, accuracy);
+        let tables =
+            if accuracy == Accuracy::FINE { self.fine.get_or_init(make).clone() } else { make() };
         Self { accuracy, tables, ..self.clone() }
     }
 

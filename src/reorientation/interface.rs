@@ -27,7 +27,7 @@ impl Subject for TaskSubject {
     fn identity(&self) -> Identity {
         let (accuracy, boxes) = (self.problem.accuracy(), &self.boxes);
         Identity::of(json!({
-            "task": &**self.problem.task(),
+            "task": self.problem.task().identity(),
             "family": { "name": "sine-polynomial", "terms": self.problem.family().terms() },
             "accuracy": {
                 "attitude_steps": accuracy.attitude_steps,
@@ -67,7 +67,7 @@ impl Subject for TaskSubject {
         vec![
             (
                 Quantity::new("robot", ValueKind::Text, "name of the robot"),
-                task.robot.name.as_str().into(),
+                task.robot.name().into(),
             ),
             (shown("weight_base", ValueKind::Real, "`K_b`"), task.base_weight.into()),
             (

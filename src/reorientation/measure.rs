@@ -6,9 +6,9 @@ use std::sync::Arc;
 use nalgebra::UnitQuaternion;
 
 use super::fitness::{Accuracy, Reorientation};
-use crate::attitude::{JointState, Midpoints, Rollout};
+use crate::attitude::{Midpoints, Rollout};
 use crate::lanes::{LaneWork, Lanes};
-use crate::momentum::Arm;
+use crate::momentum::{Arm, JointState};
 use crate::task::Task;
 use crate::trajectory::{ArchRoom, Family, Sampler, Samples, longest_asked};
 
@@ -120,8 +120,6 @@ impl LaneWork for Turn<'_> {
     #[inline(always)]
     fn run<T: Lanes>(self) -> UnitQuaternion<f64> {
         let (family, Tables { arm, rollout, .. }) = (self.problem.family(), self.problem.tables());
-        let net = rollout.net_rotation::<T>(arm, family, self.coefficients, self.joints);
-        let mount = arm.mount();
-        mount * UnitQuaternion::from(net) * mount.inverse()
+        rollout.net_rotation::<T>(arm, family, self.coefficients, self.joints)
     }
 }

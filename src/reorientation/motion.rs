@@ -36,12 +36,12 @@ impl Motion {
         let task = problem.task();
         let path = problem.family().path(coefficients);
         let taus: Vec<f64> = (0..=intervals).map(|i| i as f64 / intervals as f64).collect();
-        let joints = task.robot.joints.iter().zip(path.joints()).map(|(joint, path)| {
+        let joints = task.robot.joints().zip(path.joints()).map(|(joint, path)| {
             let derivatives = taus.iter().map(|&tau| {
                 let values = path.derivatives::<4>(tau);
                 std::array::from_fn(|k| values[k] / duration.powi(k as i32))
             });
-            JointMotion { name: joint.name.clone(), derivatives: derivatives.collect() }
+            JointMotion { name: joint.name.to_owned(), derivatives: derivatives.collect() }
         });
         let steps = increments(&task.robot, &path, intervals);
         let mut base = vec![task.start.base];

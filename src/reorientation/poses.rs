@@ -58,7 +58,7 @@ impl RandomPoses {
 
     fn pose(&self, robot: &Robot, rng: &mut Rng) -> PoseTable {
         let (mut start, mut goal) = (Vec::new(), Vec::new());
-        for joint in &robot.joints {
+        for joint in robot.joints() {
             let [lower, upper] = joint.range.map(f64::to_degrees);
             let middle = f64::midpoint(lower, upper);
             let half = self.range_share * (upper - lower) / 2.0;

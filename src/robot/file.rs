@@ -4,7 +4,8 @@ use nalgebra::{Cholesky, Matrix3, Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::{Body, DhRow, Joint, Robot};
+use super::link::{Axis, Body, Joint, Link, Placement};
+use super::tree::{Robot, Tool};
 use crate::input::{Document, InputError, finite, finite_array, interval, positive};
 
 /// The robots that come with the program: name and file.
@@ -24,7 +25,7 @@ impl Robot {
 
     /// Reads a robot.
     pub fn from_document(document: &Document) -> Result<Self, InputError> {
-        RobotFile::read(document).map(Self::from)
+        RobotFile::read(document)?.build(document)
     }
 }
 
@@ -136,37 +137,42 @@ impl From<Inertia> for InertiaTable {
     }
 }
 
-impl From<RobotFile> for Robot {
-    fn from(file: RobotFile) -> Self {
-        let [yaw, pitch, roll] = file.base.mount_zyx_deg.map(f64::to_radians);
-        Self {
-            name: file.name,
-            base: Body { mass: file.base.mass, inertia: file.base.inertia.0 },
-            mount: file.base.mount.into(),
-            mount_rotation: Rotation3::from_euler_angles(roll, pitch, yaw),
-            joints: file
-                .joint
-                .into_inner()
-                .into_iter()
-                .enumerate()
-                .map(|(i, j)| j.numbered(i + 1))
-                .collect(),
+impl RobotFile {
+    /// The chain of links that the rows describe. A row's step leads from its own link to the next joint,
+    /// the last row's to the tool.
+    pub fn build(self, document: &Document) -> Result<Robot, InputError> {
+        let [yaw, pitch, roll] = self.base.mount_zyx_deg.map(f64::to_radians);
+        let mount = Rotation3::from_euler_angles(roll, pitch, yaw);
+        let span = self.joint.span();
+        let mut placement = Placement::new(self.base.mount.into(), mount);
+        let mut links = Vec::new();
+        for (i, row) in self.joint.into_inner().into_iter().enumerate() {
+            let step = row.dh.placement();
+            links.push(row.link(i, std::mem::replace(&mut placement, step)));
         }
+        let base = Body { mass: self.base.mass, inertia: self.base.inertia.0 };
+        let tool = Tool { link: links.len().checked_sub(1), placement };
+        Robot::new(self.name, base, links, tool)
+            .map_err(|error| document.error_at(span, error.to_string(), None))
+    }
+}
+
+impl DhTable {
+    fn placement(&self) -> Placement {
+        let [offset, twist] = [self.offset_deg, self.alpha_deg].map(f64::to_radians);
+        Placement::dh(offset, self.d, self.a, twist)
     }
 }
 
 impl JointTable {
-    fn numbered(self, number: usize) -> Joint {
-        Joint {
-            name: self.name.unwrap_or_else(|| format!("joint{number}")),
-            dh: DhRow::new(
-                self.dh.offset_deg.to_radians(),
-                self.dh.d,
-                self.dh.a,
-                self.dh.alpha_deg.to_radians(),
-            ),
-            range: self.range_deg.map(f64::to_radians),
-            link: Body { mass: self.mass, inertia: self.inertia.0 },
+    fn link(self, index: usize, placement: Placement) -> Link {
+        let range = self.range_deg.map(f64::to_radians);
+        Link {
+            name: self.name.unwrap_or_else(|| format!("joint{}", index + 1)),
+            parent: index.checked_sub(1),
+            placement,
+            joint: Joint::Revolute(Axis { direction: Vector3::z_axis(), range }),
+            body: Body { mass: self.mass, inertia: self.inertia.0 },
             centre_of_mass: Vector3::from(self.centre_of_mass),
         }
     }
@@ -183,7 +189,8 @@ mod tests {
     /// Table 2's `a_i + b_i` reproduces Table 1's rows; link 4 is the telling one.
     #[test]
     fn the_step_between_joints_is_a_plus_b() {
-        let step = paper().joints[3].dh.step;
+        let robot = paper();
+        let step = robot.links()[4].placement.translation();
         assert!((step - Vector3::new(0.0, -0.425 - 0.45, 0.13 + 0.11)).norm() < 1e-15);
     }
 

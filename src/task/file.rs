@@ -134,7 +134,7 @@ impl Reader<'_> {
     fn posture(&self, table: &PostureTable) -> Result<Posture, InputError> {
         let angles = table.joints_deg.get_ref();
         self.check_length(&table.joints_deg, angles.len())?;
-        for (joint, Finite(angle)) in self.robot.joints.iter().zip(angles) {
+        for (joint, Finite(angle)) in self.robot.joints().zip(angles) {
             let [lower, upper] = joint.range.map(f64::to_degrees);
             // A hair's breadth for the rounding of degrees to radians and back.
             if !(lower - 1e-9..=upper + 1e-9).contains(angle) {
@@ -166,7 +166,7 @@ impl Reader<'_> {
         }
         let message = format!(
             "found {found} values, expected {expected}, one for each joint of robot `{}`",
-            self.robot.name
+            self.robot.name()
         );
         let help = list.span().is_empty().then(|| {
             "the file leaves this to the paper's task, which is for another robot".to_owned()

@@ -6,7 +6,7 @@ mod pose;
 use std::sync::Arc;
 
 use nalgebra::UnitQuaternion;
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use crate::robot::Robot;
 use crate::trajectory::Limits;
@@ -14,7 +14,7 @@ pub use file::TaskTable;
 pub use pose::{PoseTable, PostureParts};
 
 /// A rest-to-rest motion of the arm that is also to turn the base.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct Task {
     /// The robot.
     pub robot: Arc<Robot>,
@@ -29,6 +29,19 @@ pub struct Task {
 }
 
 impl Task {
+    /// All that a motion's cost follows from, as JSON: [`Robot::identity`], `start` and `goal` with `joints`
+    /// \[rad or m\] and `base`, a quaternion `w, x, y, z` from base axes to inertial axes, `limits` on rate,
+    /// acceleration and jerk per joint, and `base_weight`.
+    pub fn identity(&self) -> Value {
+        json!({
+            "robot": self.robot.identity(),
+            "start": self.start.identity(),
+            "goal": self.goal.identity(),
+            "limits": self.limits.0,
+            "base_weight": self.base_weight,
+        })
+    }
+
     /// The limit of all joints on rate, acceleration or jerk (order 0, 1, 2), in degrees; none where
     /// joints differ. As written, without the rounding of its way through radians.
     pub fn uniform_limit_deg(&self, order: usize) -> Option<f64> {
@@ -40,10 +53,17 @@ impl Task {
 }
 
 /// Joint angles and base attitude, at rest.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Posture {
     /// Joint angles \[rad\].
     pub joints: Vec<f64>,
     /// Turns base axes into inertial axes.
     pub base: UnitQuaternion<f64>,
+}
+
+impl Posture {
+    fn identity(&self) -> Value {
+        let [x, y, z, w]: [f64; 4] = self.base.coords.into();
+        json!({ "joints": self.joints, "base": [w, x, y, z] })
+    }
 }

@@ -1,7 +1,5 @@
 //! The largest rate, acceleration and jerk over continuous time, and the duration they allow.
 
-use serde::Serialize;
-
 use super::family::Family;
 use super::samples::Sampler;
 
@@ -28,7 +26,7 @@ impl Peak {
 
 /// The most each joint may do: rate \[rad/s\], acceleration \[rad/s²\], jerk \[rad/s³\]
 /// (eqs. 30–32).
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Limits(pub Vec<[f64; 3]>);
 
 /// A local maximum of `|θ'|`, `|θ''|` or `|θ'''|` along a path.

@@ -10,7 +10,7 @@ use std::process::Command;
 
 use driftless::experiment::Experiment;
 use driftless::input::Document;
-use driftless::registry::registry;
+use driftless::registry;
 use slurm::{Array, output, until};
 use tempfile::TempDir;
 

@@ -1,6 +1,6 @@
 //! `scp` from one random start after the other, a line of JSON for each.
 //!
-//! `cargo run --release --example starts -- [STARTS] [FIRST_SEED]`: of every seed the first start
+//! `cargo run --release --example peers_starts -- [STARTS] [FIRST_SEED]`: of every seed the first start
 //! that `driftless plan --seed` would follow. The clock runs while one start is followed, and only
 //! then; the values printed are those of the fine evaluation.
 

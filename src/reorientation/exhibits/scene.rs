@@ -8,7 +8,7 @@ use crate::exhibit::Scene;
 use crate::posture::{Posture, Satellite};
 use crate::reorientation::fitness::Reorientation;
 use crate::reorientation::motion::Motion;
-use crate::robot::{Joint, Robot};
+use crate::robot::{MovingJoint, Robot};
 
 /// Most instances whose best motion is shown.
 const MOST_SCENES: usize = 24;
@@ -86,11 +86,11 @@ fn frames(robot: &Robot, motion: &Motion) -> Vec<Posture> {
 
 fn joints(problem: &Reorientation, motion: &Motion) -> Vec<JointScene> {
     let task = problem.task();
-    let joint = |(i, joint): (usize, &Joint)| JointScene {
-        name: joint.name.clone(),
+    let joint = |(i, joint): (usize, MovingJoint<'_>)| JointScene {
+        name: joint.name.to_owned(),
         range: joint.range.map(f64::to_degrees),
         limits: task.limits.0[i].map(f64::to_degrees),
         states: motion.joints[i].derivatives.iter().map(|s| s.map(f64::to_degrees)).collect(),
     };
-    task.robot.joints.iter().enumerate().map(joint).collect()
+    task.robot.joints().enumerate().map(joint).collect()
 }
