@@ -108,6 +108,8 @@ pub mod trajectory;
 #[doc(hidden)]
 pub mod vec3;
 
+pub use output::FileError;
+
 mod digest;
 #[cfg(feature = "harness")]
 mod figure;

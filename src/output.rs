@@ -18,7 +18,7 @@ pub struct FileError {
 }
 
 /// Whether [`write_file`] can write there: the folder takes new files, and no folder has the name.
-pub fn check_writable(path: &Path) -> Result<(), FileError> {
+pub(crate) fn check_writable(path: &Path) -> Result<(), FileError> {
     let error = |source| FileError { action: "write", path: path.to_owned(), source };
     if path.is_dir() {
         return Err(error(io::ErrorKind::IsADirectory.into()));
@@ -32,7 +32,7 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// Writes to a temporary file in the same folder, flushes it to the disk and renames it.
-pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let error = |source| FileError { action: "write", path: path.to_owned(), source };
     let mut file = readable_by_all(0o666).tempfile_in(folder_of(path)).map_err(error)?;
     file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(error)?;
@@ -41,7 +41,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 }
 
 /// Makes a folder and those above it.
-pub fn create_folder(path: &Path) -> Result<(), FileError> {
+pub(crate) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|source| FileError {
         action: "create",
         path: path.to_owned(),
@@ -50,7 +50,7 @@ pub fn create_folder(path: &Path) -> Result<(), FileError> {
 }
 
 /// Waits until what was renamed into a folder is on the disk under its new name.
-pub fn sync_folder(path: &Path) -> Result<(), FileError> {
+pub(crate) fn sync_folder(path: &Path) -> Result<(), FileError> {
     let error = |source| FileError { action: "flush", path: path.to_owned(), source };
     // Elsewhere a folder is nothing that can be opened.
     if cfg!(unix) {
@@ -62,7 +62,7 @@ pub fn sync_folder(path: &Path) -> Result<(), FileError> {
 
 /// Has a folder filled under a temporary name beside its own, then renames it. Nothing that is there
 /// is touched: the folder may exist, but only empty.
-pub fn write_folder<E: From<FileError>>(
+pub(crate) fn write_folder<E: From<FileError>>(
     path: &Path,
     fill: impl FnOnce(&Path) -> Result<(), E>,
 ) -> Result<(), E> {
@@ -98,7 +98,7 @@ fn readable_by_all(mode: u32) -> tempfile::Builder<'static, 'static> {
 }
 
 /// A name, with a number where it is taken. Some file systems take capitals and small letters for the same.
-pub fn unlike(plain: &str, taken: &mut HashSet<String>) -> String {
+pub(crate) fn unlike(plain: &str, taken: &mut HashSet<String>) -> String {
     let mut name = plain.to_owned();
     for n in 2.. {
         if taken.insert(name.to_lowercase()) {
@@ -110,7 +110,7 @@ pub fn unlike(plain: &str, taken: &mut HashSet<String>) -> String {
 }
 
 /// A label as part of a file's name on any system: letters, digits, `-` and `_`, a hundred at most.
-pub fn file_name(label: &str) -> String {
+pub(crate) fn file_name(label: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     label.trim().chars().map(plain).take(100).collect()
 }

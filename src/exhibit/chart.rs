@@ -3,18 +3,49 @@
 use std::borrow::Cow;
 
 use crate::figure::Figure;
+use crate::figure::axis::Axis;
+use crate::figure::marks::{Line, Mark};
+use crate::figure::panel::{MARGIN, Panel, extent, range};
+use crate::figure::sheet::printable;
+use crate::figure::style::Stroke;
 
 /// A figure with what goes with it in a report.
 #[derive(Debug, Clone)]
 pub struct Chart {
     /// Name of its files.
-    pub name: String,
+    pub(crate) name: String,
     /// What it shows, in a few words.
-    pub title: String,
+    pub(crate) title: String,
     /// How to read it.
-    pub caption: String,
+    pub(crate) caption: String,
     /// Name of the table it was drawn from.
-    pub table: Cow<'static, str>,
+    pub(crate) table: Cow<'static, str>,
     /// The drawing.
-    pub figure: Figure,
+    pub(crate) figure: Figure,
+}
+
+impl Chart {
+    /// Lines over one abscissa: each with its name and its points, `[x, y]`. `name`, of letters, digits and `-`, is that
+    /// of the chart's files, `table` that of the table with its data; `axes` are labels with units.
+    pub fn lines(
+        [name, title, caption, table]: [&str; 4],
+        axes: [&str; 2],
+        lines: &[(&str, Vec<[f64; 2]>)],
+    ) -> Self {
+        let line = |(i, (name, points)): (usize, &(&str, Vec<[f64; 2]>))| {
+            Line::new(&printable(name), Stroke::of(i), points.clone())
+        };
+        let lines: Vec<Line> = lines.iter().enumerate().map(line).collect();
+        let abscissae = lines.iter().flat_map(|line| line.points.iter().map(|[x, _]| *x));
+        let x = Axis::linear(&printable(axes[0]), range(abscissae, f64::NEG_INFINITY), MARGIN);
+        let y = Axis::linear(&printable(axes[1]), extent(&lines), MARGIN);
+        let panel = Panel::new(x, y, lines.into_iter().map(Mark::Line).collect());
+        Self {
+            name: name.to_owned(),
+            title: title.to_owned(),
+            caption: caption.to_owned(),
+            table: table.to_owned().into(),
+            figure: Figure::column(vec![panel], 44.0),
+        }
+    }
 }

@@ -7,7 +7,7 @@ use crate::output::FileError;
 
 /// A figure that could not be drawn or written.
 #[derive(Debug, thiserror::Error)]
-pub enum FigureError {
+pub(crate) enum FigureError {
     /// The drawing went wrong.
     #[error("cannot draw a figure: {0}")]
     Draw(String),

@@ -14,7 +14,7 @@ use crate::output::{create_folder, write_file};
 
 /// Panels in rows, under one legend.
 #[derive(Debug, Clone)]
-pub struct Figure {
+pub(crate) struct Figure {
     pub(crate) width: Width,
     /// Panels in a row.
     pub(crate) across: usize,
@@ -49,7 +49,7 @@ impl Figure {
     }
 
     /// Writes `NAME.svg`, `NAME.png` and `NAME.pdf` into a folder, made if need be.
-    pub fn save(&self, folder: &Path, name: &str) -> Result<(), FigureError> {
+    pub(crate) fn save(&self, folder: &Path, name: &str) -> Result<(), FigureError> {
         create_folder(folder)?;
         let tree = self.tree()?;
         write_file(&folder.join(format!("{name}.svg")), svg(&tree).as_bytes())?;
@@ -59,7 +59,7 @@ impl Figure {
     }
 
     /// The figure as SVG.
-    pub fn svg(&self) -> Result<String, FigureError> {
+    pub(crate) fn svg(&self) -> Result<String, FigureError> {
         Ok(svg(&self.tree()?))
     }
 

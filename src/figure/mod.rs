@@ -11,5 +11,5 @@ pub(crate) mod sheet;
 pub(crate) mod stored_pictures;
 pub(crate) mod style;
 
-pub use error::FigureError;
-pub use figure::Figure;
+pub(crate) use error::FigureError;
+pub(crate) use figure::Figure;

@@ -10,7 +10,7 @@ use crate::experiment::Plan;
 use crate::figure::{Figure, FigureError};
 
 /// The names that every experiment's charts may have.
-pub const NAMES: [&str; 8] = [
+pub(crate) const NAMES: [&str; 8] = [
     "convergence",
     "running-time-distribution",
     "expected-running-time",
@@ -34,7 +34,7 @@ struct Maker<'a> {
 /// Every chart that the tables of an experiment with so many stored runs give. Those of more than 24
 /// groups of instances are left out.
 /// `leading` are a subject's own, which come first.
-pub fn charts(
+pub(crate) fn charts(
     plan: &Plan,
     tables: &[Table],
     stored: usize,

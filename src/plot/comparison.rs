@@ -30,7 +30,7 @@ const LONGEST_NAME: f64 = 48.0;
 
 /// The final costs of all runs, from the table `runs`: quartiles as a box, least and largest as whiskers,
 /// and single runs where they are few; failed ones are counted at the end.
-pub fn final_costs(
+pub(super) fn final_costs(
     frame: &DataFrame,
     looks: &Looks,
     symbol: &str,
@@ -109,7 +109,7 @@ fn boxed(row: f64, costs: &[f64], stroke: Stroke) -> Vec<Mark> {
 /// Vargha and Delaney's A12 of every two optimisers as a heat map, from the table `pairs`, in the order of the
 /// table `ranks`: the probability that a run of the row's ends lower than one of the column's. A star marks pairs that
 /// differ significantly; pairs that do not are pale.
-pub fn effect_sizes(pairs: &DataFrame, ranks: &DataFrame) -> Result<Figure, FigureError> {
+pub(super) fn effect_sizes(pairs: &DataFrame, ranks: &DataFrame) -> Result<Figure, FigureError> {
     let order = texts(ranks, "optimiser")?;
     let place = |label: &String| order.iter().position(|name| name == label).unwrap_or_default();
     let (first, second) = (texts(pairs, "first")?, texts(pairs, "second")?);

@@ -16,7 +16,7 @@ const LOWEST: f64 = 1e-9;
 
 /// Median of the best cost so far over the runs, with the quartiles as a band, from the table `convergence`.
 /// `symbol` stands for the cost.
-pub fn convergence(
+pub(super) fn convergence(
     frame: &DataFrame,
     looks: &Looks,
     symbol: &str,

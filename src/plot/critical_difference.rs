@@ -87,7 +87,7 @@ impl Diagram {
 /// `friedman`; the bar on top is Nemenyi's critical difference.
 ///
 /// Demšar (2006), J. Mach. Learn. Res. 7, 1–30.
-pub fn critical_difference(
+pub(super) fn critical_difference(
     ranks: &DataFrame,
     friedman: &DataFrame,
     looks: &Looks,

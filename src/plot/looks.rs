@@ -18,7 +18,7 @@ const MOST_IN_A_PANEL: usize = 8;
 /// has. Of several that share all this, every other one
 /// has hollow markers, and later ones lighter and darker colours.
 #[derive(Debug, Clone)]
-pub struct Looks {
+pub(super) struct Looks {
     /// Label, kind and stroke in the field's order.
     field: Vec<(String, String, Stroke)>,
     /// Groups of instances as charts write them.
@@ -47,12 +47,13 @@ fn kind_of(kind: &str, outsiders: &[&str]) -> (usize, plotters::style::RGBColor)
 
 impl Looks {
     /// The looks of a field.
-    pub fn of(field: &[Entrant]) -> Self {
+    #[cfg(test)]
+    pub(super) fn of(field: &[Entrant]) -> Self {
         Self::with_spaces(field, &[])
     }
 
     /// The looks of a plan's field, and the titles of its groups.
-    pub fn of_plan(plan: &Plan) -> Self {
+    pub(super) fn of_plan(plan: &Plan) -> Self {
         let spaces = plan.instances.iter().map(|instance| instance.subject.spaces());
         let spaces = spaces.max_by_key(Vec::len).unwrap_or_default();
         let titles = plan.instances.iter().map(|i| (printable(&i.group), i.title.clone()));

@@ -13,7 +13,7 @@ use crate::figure::{Figure, FigureError};
 
 /// Share of pairs of run and target reached against evaluations, from the table
 /// `running-time-distribution`; thin lines go on with simulated restarts. Of too many groups only all together are drawn.
-pub fn running_time_distribution(
+pub(super) fn running_time_distribution(
     frame: &DataFrame,
     looks: &Looks,
 ) -> Result<Option<Figure>, FigureError> {
@@ -42,7 +42,7 @@ pub fn running_time_distribution(
 
 /// Expected running time against how far above the least cost the target is, from the table
 /// `expected-running-time`.
-pub fn expected_running_time(
+pub(super) fn expected_running_time(
     frame: &DataFrame,
     looks: &Looks,
     symbol: &str,
@@ -71,7 +71,7 @@ const BEHIND: f64 = 1.3;
 const SHORTEST: f64 = 10.0;
 
 /// Performance or data profiles, a panel a target. `time` is the column of the abscissae.
-pub fn profiles(
+pub(super) fn profiles(
     frame: &DataFrame,
     looks: &Looks,
     time: &str,

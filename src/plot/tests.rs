@@ -2,11 +2,12 @@
 
 use polars::prelude::*;
 
+use super::comparison::{effect_sizes, final_costs};
+use super::convergence::convergence;
+use super::critical_difference::critical_difference;
 use super::curves::curves;
-use super::{
-    Looks, convergence, critical_difference, effect_sizes, expected_running_time, final_costs,
-    profiles, running_time_distribution,
-};
+use super::looks::Looks;
+use super::running_times::{expected_running_time, profiles, running_time_distribution};
 use crate::experiment::Entrant;
 use crate::figure::Figure;
 use crate::figure::stored_pictures::check;

@@ -28,7 +28,7 @@ mod symbols;
 
 pub use best_known::{BestKnown, fingerprint};
 #[cfg(feature = "harness")]
-pub use exhibits::{SAMPLES, write_motion_figures};
+pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]
 pub use export::write_motions;
 pub use export::{ExportError, INTERVALS, MotionFormat, write_motion};

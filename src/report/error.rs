@@ -15,9 +15,9 @@ pub enum ReportError {
     /// A stored result could not be read.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// A chart could not be drawn.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
+    /// A chart could not be drawn or written.
+    #[error("{0}")]
+    Figure(String),
     /// A table could not be made.
     #[error("cannot make a table: {0}")]
     Table(String),
@@ -30,6 +30,12 @@ pub enum ReportError {
     /// A file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
+}
+
+impl From<FigureError> for ReportError {
+    fn from(error: FigureError) -> Self {
+        Self::Figure(error.to_string())
+    }
 }
 
 impl From<PolarsError> for ReportError {

@@ -12,7 +12,7 @@ use crate::reorientation::motion::Motion;
 use crate::task::Task;
 
 /// Intervals at which a motion is sampled for its charts.
-pub const SAMPLES: usize = 600;
+pub(crate) const SAMPLES: usize = 600;
 
 /// The names of the charts of a motion.
 pub(super) const MOTION_NAMES: [&str; 4] =
@@ -57,7 +57,7 @@ pub(super) fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
 }
 
 /// Writes the charts of a motion into a folder.
-pub fn write_motion_figures(
+pub(crate) fn write_motion_figures(
     folder: &Path,
     motion: &Motion,
     task: &Task,
