@@ -1,59 +1,18 @@
 //! First and second derivatives, for optimisers that use them.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::failure::Failure;
 use super::problem::Problem;
-use crate::trajectory::LocalPeak;
+use super::terms::{Linearisation, Multipliers};
 
-/// A cost that is convex in smooth parts: `J(x) = a ‖r(x)‖ + b max_p h_p(x)`.
+/// A cost that is a sum of convex functions of smooth pieces, `J(x) = Σ_k w_k φ_k(v_k(x))`.
 pub trait Composite: Problem {
-    /// Values and first derivatives of all parts that matter near `x`.
+    /// Values and first derivatives of all pieces that matter near `x`. Its cost is that of
+    /// [`evaluate`](Problem::evaluate), to rounding.
     fn linearise(&self, x: &[f64]) -> Result<Linearisation, Failure>;
 
-    /// Second derivative of `ν · r(x) + Σ λ_p h_p(x)`, to a few digits.
+    /// Second derivative of `Σ_k Σ_i λ_ki v_ki` at `x`, symmetric, to a few digits; the pieces are ones that
+    /// [`linearise`](Self::linearise) named there.
     fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure>;
-}
-
-/// What the parts weigh in a Lagrangian.
-#[derive(Debug, Clone)]
-pub struct Multipliers {
-    /// `ν`, of length `a` at most.
-    pub residual: DVector<f64>,
-    /// Each `λ_p` that is not zero.
-    pub pieces: Vec<(LocalPeak, f64)>,
-}
-
-/// Values and first derivatives at a point.
-#[derive(Debug, Clone)]
-pub struct Linearisation {
-    /// `a`.
-    pub norm_weight: f64,
-    /// `r`.
-    pub residual: DVector<f64>,
-    /// One row a component of `r`, one column a variable.
-    pub residual_jacobian: DMatrix<f64>,
-    /// `b`.
-    pub max_weight: f64,
-    /// The `h_p` that are largest or not far from it.
-    pub pieces: Vec<Piece>,
-}
-
-impl Linearisation {
-    /// `J`.
-    pub fn cost(&self) -> f64 {
-        let longest = self.pieces.iter().map(|piece| piece.value).fold(0.0, f64::max);
-        self.norm_weight * self.residual.norm() + self.max_weight * longest
-    }
-}
-
-/// One `h_p`.
-#[derive(Debug, Clone)]
-pub struct Piece {
-    /// What tells it from the others, the same at points that are near.
-    pub place: LocalPeak,
-    /// Value.
-    pub value: f64,
-    /// Derivative by each variable.
-    pub gradient: DVector<f64>,
 }

@@ -6,10 +6,12 @@ mod oracle;
 mod points;
 mod problem;
 mod rng;
+mod terms;
 
-pub use composite::{Composite, Linearisation, Multipliers, Piece};
+pub use composite::Composite;
 pub use failure::Failure;
 pub use oracle::{Best, Oracle, Stop, TracePoint, Watch};
 pub use points::{Bounds, BoundsError, Points, PointsIter, PointsIterMut};
 pub use problem::{Evaluation, Problem};
 pub use rng::Rng;
+pub use terms::{Linearisation, Multipliers, Piece, PieceId, Shape, Term};
