@@ -5,10 +5,9 @@ use std::time::{Duration, Instant};
 
 use nalgebra::DMatrix;
 
-use super::composite::Composite;
 use super::failure::Failure;
 use super::points::{Bounds, Points};
-use super::problem::{Evaluation, Problem};
+use super::problem::{Composite, Evaluation, Problem};
 use super::terms::{Linearisation, Multipliers};
 
 /// Why an optimiser has to stop.

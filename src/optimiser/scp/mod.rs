@@ -26,7 +26,7 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Optimiser;
+use super::method::Optimiser;
 use crate::input::{count, optional_count, positive, share};
 use crate::search::{Bounds, Oracle, Rng, Stop};
 use iterate::Iterate;

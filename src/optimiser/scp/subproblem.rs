@@ -127,7 +127,9 @@ impl Model<'_> {
             let pieces = self.largest_in_reach(k, &values[k]);
             if !pieces.is_empty() {
                 let t = program.variable(self.weights[k]);
-                pieces.iter().for_each(|&p| program.bound([k, p], term, values[k][p], t));
+                for p in pieces {
+                    program.bound([k, p], term, values[k][p], t);
+                }
             }
         }
         for (k, term) in self.terms(Shape::Hinge) {
