@@ -10,7 +10,6 @@ use driftless::momentum::base_twist;
 use driftless::reorientation::{Formulated, Formulation, TaskFile};
 use driftless::search::Rng;
 use driftless::search::{Composite, Multipliers, Problem};
-use nalgebra::DVector;
 
 fn evaluation(c: &mut Criterion) {
     let document = TaskFile::paper();
@@ -42,10 +41,10 @@ fn evaluation(c: &mut Criterion) {
         let problem = formulated(Formulation::TimeFree, width);
         let x = within(&problem, 0.5);
         let parts = problem.linearise(&x).expect("the task never fails");
-        let multipliers = Multipliers {
-            residual: DVector::from_element(3, 1.0),
-            pieces: parts.pieces.iter().take(8).map(|piece| (piece.place, 0.1)).collect(),
+        let weigh = |term: usize, count: usize, by: f64| {
+            parts.terms[term].pieces.iter().take(count).map(|piece| (piece.id, by)).collect()
         };
+        let multipliers = Multipliers { terms: vec![weigh(0, 3, 1.0), weigh(1, 8, 0.1)] };
         group.bench_function(BenchmarkId::new("first", width.name()), |b| {
             b.iter(|| problem.linearise(black_box(&x)));
         });

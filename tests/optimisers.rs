@@ -6,9 +6,9 @@ use driftless::functions::{Analytic, TestFunction};
 use driftless::optimiser::Settings;
 use driftless::search::{Best, Oracle, Rng, Stop, Watch};
 use driftless::search::{
-    Bounds, Composite, Evaluation, Failure, Linearisation, Multipliers, Piece, Problem,
+    Bounds, Composite, Evaluation, Failure, Linearisation, Multipliers, Piece, PieceId, Problem,
+    Term,
 };
-use driftless::trajectory::LocalPeak;
 use nalgebra::{DMatrix, DVector};
 
 /// The cost to give at a point instead of the right one, if any.
@@ -48,7 +48,7 @@ impl Problem for Watched {
     }
 }
 
-/// `max(Σ x_j², 0)`, with derivatives; one call may fail.
+/// `Σ x_j²`, a maximum of one piece, with derivatives; one call may fail.
 struct SumOfSquares {
     bounds: Bounds,
     fails_at: u64,
@@ -81,19 +81,12 @@ impl Composite for SumOfSquares {
     fn linearise(&self, x: &[f64]) -> Result<Linearisation, Failure> {
         self.call()?;
         let x = DVector::from_column_slice(x);
-        let place = LocalPeak { joint: 0, order: 1, tau: 0.5 };
-        let piece = Piece { place, value: x.norm_squared(), gradient: 2.0 * &x };
-        Ok(Linearisation {
-            norm_weight: 1.0,
-            residual: DVector::zeros(1),
-            residual_jacobian: DMatrix::zeros(1, x.len()),
-            max_weight: 1.0,
-            pieces: vec![piece],
-        })
+        let piece = Piece { id: PieceId::alone(0), value: x.norm_squared(), gradient: 2.0 * &x };
+        Ok(Linearisation { terms: vec![Term::max(1.0, vec![piece])] })
     }
 
     fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure> {
-        let lambda: f64 = multipliers.pieces.iter().map(|(_, lambda)| lambda).sum();
+        let lambda: f64 = multipliers.terms[0].iter().map(|(_, lambda)| lambda).sum();
         Ok(DMatrix::from_diagonal_element(x.len(), x.len(), 2.0 * lambda))
     }
 }

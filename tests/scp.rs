@@ -8,7 +8,7 @@ use driftless::optimiser::{De, Ending, Hybrid, Optimiser, Scp, Settings};
 use driftless::reorientation::{Formulated, Formulation, TaskFile};
 use driftless::search::{Composite, Problem};
 use driftless::search::{Oracle, Rng, Stop, Watch};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// The best motion known with two terms a joint, which IPOPT finds too: `benches/peers/casadi`.
 const BEST_KNOWN: f64 = 0.781_850;
@@ -140,7 +140,9 @@ fn ends_where_nothing_near_is_better() {
         let start = Scp::start(problem.bounds(), &mut Rng::new(seed));
         assert_eq!(Scp::default().follow(&mut oracle, &start), Ok(Ending::Optimal), "seed {seed}");
         let best = oracle.best().unwrap().clone();
-        let jacobian = problem.linearise(&best.x).unwrap().residual_jacobian;
+        let parts = problem.linearise(&best.x).unwrap();
+        let rows: Vec<_> = parts.terms[0].pieces.iter().map(|p| p.gradient.transpose()).collect();
+        let jacobian = DMatrix::from_rows(&rows);
         let inverse = jacobian.clone().pseudo_inverse(1e-9).unwrap();
         let mut rng = Rng::new(seed);
         for _ in 0..500 {
@@ -148,7 +150,9 @@ fn ends_where_nothing_near_is_better() {
             let step = &any - &inverse * (&jacobian * &any);
             let mut x = DVector::from_column_slice(&best.x) + step;
             for _ in 0..2 {
-                x -= &inverse * problem.linearise(x.as_slice()).unwrap().residual;
+                let parts = problem.linearise(x.as_slice()).unwrap();
+                let error = parts.terms[0].pieces.iter().map(|piece| piece.value);
+                x -= &inverse * DVector::from_iterator(3, error);
             }
             let cost = problem.evaluate(x.as_slice()).unwrap().cost;
             assert!(cost > best.evaluation.cost - 1e-8, "seed {seed}: {cost}");

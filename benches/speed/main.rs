@@ -19,7 +19,7 @@ use driftless::reorientation::{
 use driftless::search::{Bounds, Composite, Evaluation, Failure, Multipliers, Points, Problem};
 use driftless::search::{Oracle, Rng, Watch};
 use driftless::trajectory::Peaks;
-use nalgebra::{DVector, UnitQuaternion};
+use nalgebra::UnitQuaternion;
 use operations::{Operations, Peak};
 
 /// How often each line is measured.
@@ -169,11 +169,11 @@ fn evaluations(paper: &Paper) {
 }
 
 fn multipliers(problem: &Formulated, x: &[f64]) -> Multipliers {
-    let pieces = problem.linearise(x).expect("the task never fails").pieces;
-    Multipliers {
-        residual: DVector::from_element(3, 1.0),
-        pieces: pieces.iter().take(8).map(|piece| (piece.place, 0.1)).collect(),
-    }
+    let parts = problem.linearise(x).expect("the task never fails");
+    let weigh = |term: usize, count: usize, by: f64| {
+        parts.terms[term].pieces.iter().take(count).map(|piece| (piece.id, by)).collect()
+    };
+    Multipliers { terms: vec![weigh(0, 3, 1.0), weigh(1, 8, 0.1)] }
 }
 
 /// A problem that costs no time, in the box of another: what a run on it takes is the optimiser's.

@@ -1,12 +1,22 @@
 //! Every optimiser by name, with its settings.
 
+use std::fmt;
+
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{CmaEs, De, Hybrid, LShade, NelderMead, Optimiser, Pso, RandomSearch, Scp};
+use super::cma_es::CmaEs;
+use super::de::De;
+use super::hybrid;
+use super::l_shade::LShade;
+use super::method::Optimiser;
+use super::nelder_mead::NelderMead;
+use super::pso::Pso;
+use super::random::RandomSearch;
+use super::scp::Scp;
 
-/// From one line an optimiser: the choice of one with its settings, and what has to be known of each.
+/// From one line per optimiser: the choice of one with its settings, and what has to be known of each.
 macro_rules! catalogue {
     ($($(#[$about:meta])* $name:literal: $settings:ident,)*) => {
         /// One optimiser and its settings, as an `[[optimiser]]` table says it.
@@ -27,7 +37,7 @@ macro_rules! catalogue {
             }
 
             /// The optimiser itself.
-            pub fn optimiser(&self) -> &dyn Optimiser {
+            pub fn optimiser(&self) -> &(dyn Optimiser + 'static) {
                 match self { $(Self::$settings(settings) => settings,)* }
             }
 
@@ -56,6 +66,28 @@ catalogue! {
     "random": RandomSearch,
     /// Sequential convex programming from random starts.
     "scp": Scp,
+}
+
+/// A search by an optimiser of the catalogue that needs no derivatives, then one that uses them.
+pub type Hybrid = hybrid::Hybrid<Settings>;
+
+impl From<LShade> for Settings {
+    fn from(settings: LShade) -> Self {
+        Self::LShade(settings)
+    }
+}
+
+impl AsRef<dyn Optimiser> for Settings {
+    fn as_ref(&self) -> &(dyn Optimiser + 'static) {
+        self.optimiser()
+    }
+}
+
+/// The optimiser's name.
+impl fmt::Display for Settings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 /// A setting as `list` shows it.

@@ -15,11 +15,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::distribution::{Constants, Distribution};
+use super::method::Optimiser;
+use super::places::mirror_from_unit;
 use super::population::Population;
-use super::{Optimiser, mirror_from_unit};
 use crate::input::{count, non_negative, optional_count, share};
-use crate::search::Points;
-use crate::search::{Oracle, Rng, Stop};
+use crate::search::{Oracle, Points, Rng, Stop};
 
 /// Settings of CMA-ES.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -11,7 +11,7 @@ use std::num::NonZeroUsize;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Optimiser;
+use super::method::Optimiser;
 use super::population::{Population, index_besides};
 use crate::input::{fraction, optional_count, positive};
 use crate::search::{Oracle, Rng, Stop};

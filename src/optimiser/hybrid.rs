@@ -1,22 +1,30 @@
 //! An optimiser without derivatives, then [`Scp`] from the best point it found; again and again while
 //! the budget lasts.
 
+use std::fmt::Display;
+
 use schemars::JsonSchema;
-use serde::de::{Deserializer, Error as _};
+use serde::de::{DeserializeOwned, Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 
-use super::{LShade, Optimiser, Scp, Settings};
+use super::l_shade::LShade;
+use super::method::Optimiser;
+use super::scp::Scp;
 use crate::input::share;
 use crate::search::{Oracle, Rng, Stop};
 
-/// Settings of a hybrid.
+/// Settings of a hybrid whose first search is chosen by `S`, which shows its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
-pub struct Hybrid {
+#[serde(bound(
+    deserialize = "S: From<LShade> + AsRef<dyn Optimiser> + Display + DeserializeOwned"
+))]
+#[schemars(rename = "Hybrid", bound = "S: From<LShade> + Serialize")]
+pub struct Hybrid<S> {
     /// optimiser that searches first, with its settings, such as `{ de = { weight = 0.7 } }`
     #[serde(deserialize_with = "to_refine")]
     #[schemars(with = "serde_json::Value")]
-    pub search: Box<Settings>,
+    pub search: Box<S>,
     /// share of the budget that it may spend at a time
     #[serde(deserialize_with = "share")]
     pub share: f64,
@@ -24,36 +32,39 @@ pub struct Hybrid {
     pub refine: Scp,
 }
 
-impl Default for Hybrid {
+impl<S: From<LShade>> Default for Hybrid<S> {
     fn default() -> Self {
-        let search = Box::new(Settings::LShade(LShade::default()));
+        let search = Box::new(LShade::default().into());
         Self { search, share: 0.02, refine: Scp::default() }
     }
 }
 
 /// An optimiser that needs no derivatives.
-fn to_refine<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Box<Settings>, D::Error> {
-    let settings = Settings::deserialize(deserializer)?;
-    if settings.optimiser().needs_derivatives() {
-        let found = settings.name();
+fn to_refine<'de, S, D>(deserializer: D) -> Result<Box<S>, D::Error>
+where
+    S: AsRef<dyn Optimiser> + Display + Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    let search = S::deserialize(deserializer)?;
+    if search.as_ref().needs_derivatives() {
         let expected = "an optimiser that needs no derivatives";
-        return Err(D::Error::custom(format!("found `{found}`, expected {expected}")));
+        return Err(D::Error::custom(format!("found `{search}`, expected {expected}")));
     }
-    Ok(Box::new(settings))
+    Ok(Box::new(search))
 }
 
-impl Optimiser for Hybrid {
+impl<S: AsRef<dyn Optimiser> + Send + Sync> Optimiser for Hybrid<S> {
     fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
         let round = (self.share * oracle.remaining() as f64).ceil() as u64;
         loop {
-            let search = |oracle: &mut Oracle<'_>| self.search.optimiser().minimise(oracle, rng);
+            let search = |oracle: &mut Oracle<'_>| (*self.search).as_ref().minimise(oracle, rng);
             let found = oracle.within(round, search)?;
             self.refine.minimise_from(found.as_ref().map(|best| &*best.x), oracle, rng)?;
         }
     }
 
     fn formulation(&self) -> Option<&str> {
-        self.search.formulation()
+        (*self.search).as_ref().formulation()
     }
 
     fn needs_derivatives(&self) -> bool {

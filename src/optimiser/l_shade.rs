@@ -11,11 +11,10 @@ use std::num::NonZeroUsize;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Optimiser;
+use super::method::Optimiser;
 use super::population::{Population, index_besides};
 use crate::input::{count, fraction, non_negative, optional_count};
-use crate::search::Points;
-use crate::search::{Oracle, Rng, Stop};
+use crate::search::{Oracle, Points, Rng, Stop};
 
 /// Settings of L-SHADE.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

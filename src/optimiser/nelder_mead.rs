@@ -12,7 +12,8 @@ use argmin::core::{CostFunction, Error, IterState, Problem, Solver as _, State a
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Optimiser, mirror_from_unit, rank};
+use super::method::Optimiser;
+use super::places::{mirror_from_unit, rank};
 use crate::input::{count, positive, share};
 use crate::search::{Oracle, Rng, Stop};
 

@@ -1,8 +1,7 @@
 //! What methods share that move a whole population at once.
 
-use super::{rank, uniform_point};
-use crate::search::{Evaluation, Points};
-use crate::search::{Oracle, Rng, Stop};
+use super::places::{rank, uniform_point};
+use crate::search::{Evaluation, Oracle, Points, Rng, Stop};
 
 /// Points and what is known of them.
 pub(super) struct Population {

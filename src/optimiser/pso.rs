@@ -10,10 +10,10 @@ use std::num::NonZeroUsize;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Optimiser, rank, uniform_point};
+use super::method::Optimiser;
+use super::places::{rank, uniform_point};
 use crate::input::{count, finite, non_negative, positive, share};
-use crate::search::{Evaluation, Points};
-use crate::search::{Oracle, Rng, Stop};
+use crate::search::{Evaluation, Oracle, Points, Rng, Stop};
 
 /// Settings of the particle swarm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -4,9 +4,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Optimiser, uniform_point};
-use crate::search::{Evaluation, Points};
-use crate::search::{Oracle, Rng, Stop};
+use super::method::Optimiser;
+use super::places::uniform_point;
+use crate::search::{Evaluation, Oracle, Points, Rng, Stop};
 
 /// Settings of random search.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]

@@ -6,7 +6,7 @@ use super::fitness::Reorientation;
 use super::measure::Tables;
 use crate::attitude::{RotationCurvature, RotationSlopes};
 use crate::lanes::{LaneWork, Lanes};
-use crate::search::{Linearisation, Multipliers, Piece};
+use crate::search::{Failure, Linearisation, Multipliers, Piece, PieceId};
 use crate::trajectory::{LocalPeak, Path, Samples, duration_asked};
 
 /// How far below the largest, as a share of it, a part may lie to be linearised too.
@@ -20,25 +20,21 @@ impl Reorientation {
         let mut samples = self.workspace().samples;
         let slopes =
             self.width().run(Slopes { problem: self, coefficients, samples: &mut samples });
-        let (residual, residual_jacobian) = self.base_error_slopes(&slopes);
         let places = samples.local_peaks(&path, &self.task().limits, NEAR);
-        let pieces = places.into_iter().map(|place| self.piece(&path, place));
-        let (norm_weight, max_weight) = self.weights();
-        Linearisation {
-            norm_weight,
-            residual,
-            residual_jacobian,
-            max_weight,
-            pieces: pieces.collect(),
-        }
+        let durations = places.into_iter().map(|place| self.duration_piece(&path, place));
+        self.terms().time_free(self.base_error_pieces(&slopes), durations.collect())
     }
 
-    /// The base's error and its derivatives.
-    fn base_error_slopes(&self, net: &RotationSlopes) -> (DVector<f64>, DMatrix<f64>) {
+    /// The components of the base's error.
+    fn base_error_pieces(&self, net: &RotationSlopes) -> Vec<Piece> {
         let (error, by_turn) = self.turned_error(net.rotation);
         let jacobian = by_turn * &net.by_coefficient;
-        let jacobian = DMatrix::from_column_slice(3, jacobian.ncols(), jacobian.as_slice());
-        (DVector::from_column_slice(error.imag().as_slice()), jacobian)
+        let piece = |(component, value): (usize, &f64)| Piece {
+            id: PieceId::alone(component as u64),
+            value: *value,
+            gradient: jacobian.row(component).transpose(),
+        };
+        error.imag().iter().enumerate().map(piece).collect()
     }
 
     /// The base's error, and how its vector part follows a turn of the base's end in base axes.
@@ -56,7 +52,7 @@ impl Reorientation {
     }
 
     /// The duration that one limit asks for at one place of the path, and its derivatives.
-    fn piece(&self, path: &Path<'_>, place: LocalPeak) -> Piece {
+    fn duration_piece(&self, path: &Path<'_>, place: LocalPeak) -> Piece {
         let LocalPeak { joint: index, order, tau } = place;
         let joint = path.joint(index);
         let derivative = joint.derivatives::<4>(tau)[order];
@@ -67,8 +63,13 @@ impl Reorientation {
         for (k, slope) in joint.coefficient_slopes(order, tau).enumerate() {
             gradient[index * terms + k] = by_derivative * slope;
         }
-        Piece { place, value, gradient }
+        Piece { id: to_id(&place), value, gradient }
     }
+}
+
+/// A peak is on the track of its joint and order, where it stands in normalised time.
+fn to_id(peak: &LocalPeak) -> PieceId {
+    PieceId { track: (3 * peak.joint + peak.order - 1) as u64, place: peak.tau }
 }
 
 /// The base's rotation over a path with its derivatives, and the path's samples.
@@ -108,30 +109,55 @@ impl LaneWork for Bend<'_> {
     }
 }
 
+/// The multipliers of the error's components.
+fn to_vector(multipliers: &[(PieceId, f64)]) -> Result<Vector3<f64>, Failure> {
+    let mut vector = Vector3::zeros();
+    for (id, multiplier) in multipliers {
+        let component = vector.get_mut(id.track as usize);
+        let unknown =
+            || Failure::new(format!("found component {} of an error, expected 0 to 2", id.track));
+        *component.ok_or_else(unknown)? = *multiplier;
+    }
+    Ok(vector)
+}
+
 /// Second derivatives.
 impl Reorientation {
     pub(super) fn curvature(
         &self,
         coefficients: &[f64],
         multipliers: &Multipliers,
-    ) -> DMatrix<f64> {
+    ) -> Result<DMatrix<f64>, Failure> {
+        let [error, durations] = &multipliers.terms[..] else {
+            let found = multipliers.terms.len();
+            return Err(format!("found multipliers of {found} terms, expected 2").into());
+        };
         let path = self.family().path(coefficients);
-        let mut curvature = self.base_error_curvature(coefficients, &multipliers.residual);
-        for (place, lambda) in &multipliers.pieces {
+        let mut curvature = self.base_error_curvature(coefficients, &to_vector(error)?);
+        for (id, lambda) in durations {
+            let place = self.to_peak(id)?;
             let terms = path.basis().terms();
             let first = place.joint * terms;
-            let block = self.piece_curvature(&path, place) * *lambda;
+            let block = self.piece_curvature(&path, &place) * *lambda;
             let mut own = curvature.view_mut((first, first), (terms, terms));
             own += block;
         }
-        curvature
+        Ok(curvature)
     }
 
-    fn base_error_curvature(&self, coefficients: &[f64], nu: &DVector<f64>) -> DMatrix<f64> {
-        let nu = Vector3::from_column_slice(nu.as_slice());
+    /// The peak that [`to_id`] gave this id.
+    fn to_peak(&self, id: &PieceId) -> Result<LocalPeak, Failure> {
+        let (joints, track) = (self.family().joints(), id.track as usize);
+        if track < 3 * joints {
+            return Ok(LocalPeak { joint: track / 3, order: track % 3 + 1, tau: id.place });
+        }
+        Err(format!("found a piece on track {track}, expected one of {}", 3 * joints).into())
+    }
+
+    fn base_error_curvature(&self, coefficients: &[f64], nu: &Vector3<f64>) -> DMatrix<f64> {
         let (error, by_turn) = self.turned_error(self.net_rotation(coefficients));
         let turned =
-            self.width().run(Bend { problem: self, coefficients, vector: by_turn.tr_mul(&nu) });
+            self.width().run(Bend { problem: self, coefficients, vector: by_turn.tr_mul(nu) });
         // The vector part of q ⊗ exp(½ v) is the line along v less |v|²/8 of itself.
         let shrink = -0.25 * nu.dot(&error.imag());
         turned.curvature + turned.by_coefficient.tr_mul(&turned.by_coefficient) * shrink

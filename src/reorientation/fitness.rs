@@ -7,16 +7,11 @@ use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
 use super::measure::{Fitness, Measure, Tables, Turn, Workspace, powers};
+use super::terms::{Terms, penalty};
 use crate::lanes::Width;
 use crate::search::Evaluation;
 use crate::task::Task;
 use crate::trajectory::{Family, Peaks, excess, longest_asked};
-
-/// The base error that counts as one: `k_q = sin(½ · 1°)` (eq. 33; its "δ" is π).
-const K_Q_DEG: f64 = 1.0;
-
-/// `k_v = k_a = k_j`, the relative excess over a limit that counts as one (eq. 33).
-const K_EXCESS: f64 = 0.01;
 
 /// How finely a motion is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -117,6 +112,11 @@ impl Reorientation {
         &self.family
     }
 
+    /// The terms of the cost.
+    pub(super) fn terms(&self) -> Terms {
+        Terms::new(self.task.base_weight)
+    }
+
     pub(super) fn tables(&self) -> &Tables {
         &self.tables
     }
@@ -143,7 +143,7 @@ impl Reorientation {
             None => (peaks.shortest_duration(&self.task.limits), [0.0; 3]),
         };
         Assessment {
-            cost: cost(self.task.base_weight, attitude_error, duration, &excess),
+            cost: self.terms().cost(attitude_error, duration, &excess),
             attitude_error,
             duration,
             excess,
@@ -173,7 +173,7 @@ impl Reorientation {
             }
             None => (longest_asked(largest), [0.0; 3]),
         };
-        let cost = cost(self.task.base_weight, attitude_error, duration, &excess);
+        let cost = self.terms().cost(attitude_error, duration, &excess);
         Evaluation { cost, violation: excess.iter().sum() }
     }
 
@@ -195,31 +195,11 @@ impl Reorientation {
         self.check(coefficients);
         self.width.run(Turn { problem: self, coefficients, joints: &mut Vec::new() })
     }
-
-    /// What `‖δq_b‖` and `t_f` weigh in `J` where no limit is exceeded.
-    pub(super) fn weights(&self) -> (f64, f64) {
-        weights(self.task.base_weight)
-    }
-}
-
-fn weights(base_weight: f64) -> (f64, f64) {
-    let k_q = (K_Q_DEG.to_radians() / 2.0).sin();
-    (base_weight / k_q, 1.0 - base_weight)
 }
 
 /// `‖δq_b‖` of eq. 20, the vector part of the rotation from the goal to `end`.
 pub(super) fn attitude_error(goal: &UnitQuaternion<f64>, end: &UnitQuaternion<f64>) -> f64 {
     (goal.inverse() * end).imag().norm()
-}
-
-/// `J` of eq. 25.
-pub(super) fn cost(base_weight: f64, error: f64, duration: f64, excess: &[f64; 3]) -> f64 {
-    let (error_weight, time_weight) = weights(base_weight);
-    error_weight * error + time_weight * duration + penalty(excess)
-}
-
-fn penalty(excess: &[f64; 3]) -> f64 {
-    excess.iter().sum::<f64>() / K_EXCESS
 }
 
 impl Assessment {

@@ -165,6 +165,6 @@ impl Composite for Formulated {
     }
 
     fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure> {
-        Ok(self.task().curvature(x, multipliers))
+        self.task().curvature(x, multipliers)
     }
 }

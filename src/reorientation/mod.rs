@@ -25,6 +25,7 @@ mod subject;
 mod sweep;
 #[cfg(feature = "harness")]
 mod symbols;
+mod terms;
 
 pub use best_known::{BestKnown, fingerprint};
 #[cfg(feature = "harness")]

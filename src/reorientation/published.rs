@@ -6,7 +6,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::fitness::{Accuracy, Assessment, Reorientation, attitude_error, cost};
+use super::fitness::{Accuracy, Assessment, Reorientation, attitude_error};
 use super::settings::{DEFAULTS, TrajectoryTable, check_terms};
 use crate::input::{Document, Finite, InputError, Positive};
 use crate::momentum::base_twist;
@@ -186,7 +186,7 @@ impl Published {
         let excess = peaks.excess(&task.limits);
         let attitude_error = attitude_error(&roll_first(&task.goal), &end);
         Assessment {
-            cost: cost(task.base_weight, attitude_error, self.duration, &excess),
+            cost: self.problem.terms().cost(attitude_error, self.duration, &excess),
             attitude_error,
             duration: self.duration,
             excess,

@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 
 use nalgebra::DMatrix;
 
-use super::composite::{Composite, Linearisation, Multipliers};
 use super::failure::Failure;
 use super::points::{Bounds, Points};
-use super::problem::{Evaluation, Problem};
+use super::problem::{Composite, Evaluation, Problem};
+use super::terms::{Linearisation, Multipliers};
 
 /// Why an optimiser has to stop.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -227,6 +227,7 @@ impl<'a> Oracle<'a> {
         self.begin();
         self.linearisations += 1;
         let linearisation = self.timed(|| composite.linearise(x))?;
+        linearisation.check(x.len())?;
         self.record(x, linearisation.cost().into());
         Ok(linearisation)
     }
@@ -239,7 +240,14 @@ impl<'a> Oracle<'a> {
     ) -> Result<DMatrix<f64>, Stop> {
         let composite = self.composite(x)?;
         self.curvatures += 1;
-        Ok(self.timed(|| composite.curvature(x, multipliers))?)
+        let curvature = self.timed(|| composite.curvature(x, multipliers))?;
+        if curvature.shape() != (x.len(), x.len()) {
+            let ((rows, columns), n) = (curvature.shape(), x.len());
+            let reason =
+                format!("found a second derivative of {rows} × {columns}, expected {n} × {n}");
+            return Err(Failure::new(reason).into());
+        }
+        Ok(curvature)
     }
 
     /// Counts the conic subproblem that `solve` solves, or fails to.

@@ -1,19 +1,20 @@
-//! Sequential convex programming on the composite cost `J = a ‖r(x)‖ + b max_p h_p(x)`.
+//! Sequential convex programming on a cost `J = Σ_k w_k φ_k(v_k(x))` of norms, maxima and hinges of
+//! smooth pieces.
 //!
-//! Each step linearises the smooth parts and leaves the norm and the maximum as they are: a conic
-//! subproblem, solved by Clarabel, within a trust region (Fletcher 1982, doi:10.1007/BFb0120959), with
-//! a second-order correction (Fletcher 1982, doi:10.1007/BFb0093151). Since the duration is the longest
-//! that any limit asks for, every start is within the limits and stays there. The Lagrangian's second
-//! derivative within the space where the active parts stay level, with what is negative taken out so
-//! that the subproblem stays convex, makes the last steps few.
+//! Each step linearises the pieces and leaves the terms' shapes as they are: a conic subproblem, solved
+//! by Clarabel, within a trust region (Fletcher 1982, doi:10.1007/BFb0120959), with a second-order
+//! correction (Fletcher 1982, doi:10.1007/BFb0093151). The Lagrangian's second derivative within the
+//! space where the active pieces stay level, with what is negative taken out so that the subproblem
+//! stays convex, makes the last steps few.
 //!
-//! The norm is an exact penalty: as soon as `a` exceeds the multiplier of `r = 0` the minimum no longer
-//! depends on it. The task's weight is many times that, which makes a search hug `r = 0`, slow and
-//! soon in a poor valley; so the search starts with a smaller one and raises it only as it must. Where
-//! `r = 0` is out of reach, though, no weight is exact, and a small one leads every start to the same
-//! short motion; so a start that ends there is followed once more, with the task's weight throughout.
+//! A norm `w ‖r‖` is an exact penalty: as soon as `w` exceeds the multiplier of `r = 0` the minimum no
+//! longer depends on it. A weight many times that makes a search hug `r = 0`, slow and soon in a poor
+//! valley; so the search starts with smaller weights of the norms and raises them only as it must.
+//! Where `r = 0` is out of reach, though, no weight is exact, and a small one leads every start to
+//! the same few points, whatever their `r`; so a start that ends there is followed once more, with
+//! the problem's own weights throughout.
 //!
-//! A start has been followed to its end when, with the task's own weight, a step promises next to
+//! A start has been followed to its end when, with the problem's own weights, a step promises next to
 //! nothing and the Lagrangian is level, the first-order condition of a minimum.
 
 mod iterate;
@@ -25,12 +26,11 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Optimiser;
+use super::method::Optimiser;
 use crate::input::{count, optional_count, positive, share};
-use crate::search::Bounds;
-use crate::search::{Oracle, Rng, Stop};
+use crate::search::{Bounds, Oracle, Rng, Stop};
 use iterate::Iterate;
-use subproblem::{Model, Region, Step, Values};
+use subproblem::{Region, Step};
 
 /// Settings of sequential convex programming.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,7 +47,8 @@ pub struct Scp {
     /// first radius of the trust region, as a fraction of the box's half-width
     #[serde(deserialize_with = "share")]
     pub radius: f64,
-    /// first weight of the base's error, in costs of the start's duration; it grows to the task's own
+    /// first weight of the cost's norms, such as the base's error, in costs of the start's other terms; it grows
+    /// to the problem's own
     #[serde(deserialize_with = "positive")]
     pub first_weight: f64,
     /// a start ends when a step promises to lower J by less than this share of it, provided that the
@@ -156,11 +157,8 @@ const TAKE: f64 = 0.05;
 const NARROW: f64 = 0.3;
 const WIDEN: f64 = 0.7;
 
-/// By how much the weight of the norm grows at a time.
+/// By how much the weights of norms grow at a time.
 const GROWTH: f64 = 10.0;
-
-/// Share of its largest value above which a multiplier counts.
-const ACTIVE: f64 = 1e-5;
 
 /// Share of the start's cost below which a cost is as good as none.
 const NOTHING: f64 = 1e-6;
@@ -170,39 +168,35 @@ struct Search<'a, 'b> {
     settings: &'a Scp,
     oracle: &'a mut Oracle<'b>,
     here: Iterate,
-    /// Where to begin once more with the task's own weight.
+    /// Where to begin once more with the problem's own weights.
     start: Option<Iterate>,
     curvature: DMatrix<f64>,
     radius: f64,
-    /// The task's own weight of the norm.
-    full_weight: f64,
     start_cost: f64,
 }
 
 impl<'a, 'b> Search<'a, 'b> {
     fn new(settings: &'a Scp, oracle: &'a mut Oracle<'b>, start: &[f64]) -> Result<Self, Stop> {
-        let here = Iterate::at(oracle, DVector::from_column_slice(start))?;
-        let (full_weight, start_cost) = (here.parts.norm_weight, here.cost());
-        let here = here.weighed(0.0);
+        let mut here = Iterate::at(oracle, DVector::from_column_slice(start), f64::INFINITY)?;
+        let start_cost = here.cost();
+        here.cap = 0.0;
         let first_weight = settings.first_weight * here.cost();
-        // Where time costs nothing there is nothing to compare the error with.
-        let weight = if first_weight > 0.0 { first_weight.min(full_weight) } else { full_weight };
-        let here = here.weighed(weight);
+        // Without other terms there is nothing to compare the norms with.
+        here.cap = if first_weight > 0.0 { first_weight } else { f64::INFINITY };
         Ok(Self {
             settings,
             oracle,
-            start: (weight < full_weight).then(|| here.clone()),
+            start: here.is_capped().then(|| here.clone()),
             here,
             curvature: DMatrix::zeros(start.len(), start.len()),
             radius: settings.radius,
-            full_weight,
             start_cost,
         })
     }
 
     /// What shares of the cost are taken of.
     fn scale(&self) -> f64 {
-        self.here.cost() + NOTHING * self.start_cost
+        self.here.cost().abs() + NOTHING * self.start_cost.abs()
     }
 
     /// Solves one subproblem and makes its step, or not.
@@ -211,8 +205,9 @@ impl<'a, 'b> Search<'a, 'b> {
             return Ok(self.finish(Ending::Stalled, false));
         }
         let region = Region::around(self.oracle.bounds(), &self.here.x, self.radius);
-        let model = Model { parts: &self.here.parts, curvature: &self.curvature, region: &region };
-        let Some(step) = model.minimise(self.oracle, &Values::of(&self.here.parts))? else {
+        let weights = self.here.weights();
+        let model = self.here.model(&weights, &self.curvature, &region);
+        let Some(step) = model.minimise(self.oracle, &self.here.values())? else {
             self.radius /= 4.0;
             return Ok(None);
         };
@@ -231,7 +226,7 @@ impl<'a, 'b> Search<'a, 'b> {
             kept if kept >= WIDEN && reach > 0.9 => (2.0 * self.radius).min(1.0),
             kept if kept >= NARROW => self.radius,
             kept if kept >= TAKE => self.radius / 2.0,
-            // Also a cost that is no number.
+            // Also where the cost is NaN.
             _ => 0.35 * self.radius * reach.min(1.0),
         };
         Ok(None)
@@ -241,13 +236,10 @@ impl<'a, 'b> Search<'a, 'b> {
     fn settle(&mut self, step: &Step) -> Result<Option<Ending>, Stop> {
         let slope = self.here.slope(self.oracle.bounds(), step);
         if slope <= self.settings.stationarity * self.scale() {
-            // A shorter multiplier stays one whatever the weight.
-            let exact = step.nu.norm() < (1.0 - ACTIVE) * self.here.parts.norm_weight;
-            return Ok(self.finish(Ending::Optimal, exact));
+            return Ok(self.finish(Ending::Optimal, self.here.is_exact(step)));
         }
         // Where the cost no longer tells good steps from bad ones, the slope does.
-        let weight = self.here.parts.norm_weight;
-        let there = Iterate::at(self.oracle, &self.here.x + &step.d)?.weighed(weight);
+        let there = Iterate::at(self.oracle, &self.here.x + &step.d, self.here.cap)?;
         if there.cost() <= self.here.cost() + self.settings.tolerance * self.scale() {
             self.curvature = there.curvature(self.oracle, &self.here, step)?;
             self.here = there;
@@ -259,20 +251,19 @@ impl<'a, 'b> Search<'a, 'b> {
         Ok(None)
     }
 
-    /// Ends, unless with a smaller weight than the task's own: then goes on with a larger one. Where
-    /// even the task's own leaves an error, smaller weights led all starts towards the same few
-    /// motions, which need not be good ones; then begins once more with the task's own.
+    /// Ends, unless with smaller weights than the problem's own: then goes on with larger ones. Where
+    /// even the problem's own leave a norm, smaller weights led all starts towards the same few points,
+    /// which need not be good ones; then begins once more with the problem's own.
     fn finish(&mut self, ending: Ending, exact: bool) -> Option<Ending> {
-        let weight = self.here.parts.norm_weight;
-        let growth = if exact { f64::INFINITY } else { GROWTH };
-        if weight >= self.full_weight {
+        if self.here.is_capped() {
+            self.here.cap *= if exact { f64::INFINITY } else { GROWTH };
+        } else {
             let Some(start) = self.start.take().filter(|_| !exact) else {
                 return Some(ending);
             };
-            self.here = start.weighed(self.full_weight);
+            self.here = Iterate { cap: f64::INFINITY, ..start };
             self.curvature.fill(0.0);
         }
-        self.here.parts.norm_weight = self.full_weight.min(growth * weight);
         self.radius = self.radius.max(self.settings.radius);
         None
     }

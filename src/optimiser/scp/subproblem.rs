@@ -3,12 +3,11 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SecondOrderConeT,
-    SolverStatus, ZeroConeT,
+    SolverStatus, SupportedConeT, ZeroConeT,
 };
 use nalgebra::{DMatrix, DVector};
 
-use crate::search::{Bounds, Linearisation};
-use crate::search::{Oracle, Stop};
+use crate::search::{Bounds, Linearisation, Oracle, Piece, Shape, Stop, Term};
 
 /// The part of the box within the trust region, as bounds on the step.
 pub(super) struct Region {
@@ -40,28 +39,33 @@ impl Region {
     }
 }
 
-/// The values of `r` and of every `h`.
-pub(super) struct Values {
-    pub(super) residual: DVector<f64>,
-    pub(super) pieces: Vec<f64>,
-}
+/// A number for every piece of every term.
+pub(super) type PerPiece = Vec<Vec<f64>>;
 
-impl Values {
-    pub(super) fn of(parts: &Linearisation) -> Self {
-        let pieces = parts.pieces.iter().map(|piece| piece.value).collect();
-        Self { residual: parts.residual.clone(), pieces }
-    }
+/// The pieces' values.
+pub(super) fn values(parts: &Linearisation) -> PerPiece {
+    let of = |term: &Term| term.pieces.iter().map(|piece| piece.value).collect();
+    parts.terms.iter().map(of).collect()
 }
 
 /// What stands for `J` near a point: minimise over `d`
 ///
 /// ```text
-/// a ‖r + R d‖ + b max_p (h_p + g_p · d) + ½ dᵀ B d     within the region
+/// Σ_k w_k φ_k(v_k + G_k d) + ½ dᵀ B d     within the region
 /// ```
 ///
-/// in the variables `(d, T, t)` with `T ≥ h_p + g_p · d` and `(t, r + R d)` in the second-order cone.
+/// as a conic program in `d` and one more variable for each of the following, by its weight in the
+/// objective:
+///
+/// ```text
+/// max      t     t ≥ v_i + g_i · d          for every piece
+/// hinge    s_i   s_i ≥ v_i + g_i · d, s_i ≥ 0    one variable per piece
+/// norm     t     (t, v + G d) in the second-order cone
+/// ```
 pub(super) struct Model<'a> {
     pub(super) parts: &'a Linearisation,
+    /// What each term weighs in the search.
+    pub(super) weights: &'a [f64],
     pub(super) curvature: &'a DMatrix<f64>,
     pub(super) region: &'a Region,
 }
@@ -71,39 +75,29 @@ pub(super) struct Step {
     pub(super) d: DVector<f64>,
     /// The model's cost of `d`.
     pub(super) cost: f64,
-    /// Multiplier of each `h_p`; they add up to `b`.
-    pub(super) lambda: DVector<f64>,
-    /// Multiplier of the residual, of length `a` at most.
-    pub(super) nu: DVector<f64>,
+    /// The multiplier of every piece, as [`Multipliers`](crate::search::Multipliers) has them.
+    pub(super) multipliers: PerPiece,
 }
 
 /// Clarabel's tolerances: a promise of a billionth of the cost has to be right to a tenth of it.
 const TOLERANCE: f64 = 1e-10;
 
 impl Model<'_> {
-    /// The minimum with these values of `r` and `h`, the linearisation's or corrected ones, unless
+    /// The minimum with these values of the pieces, the linearisation's or corrected ones, unless
     /// Clarabel fails.
     pub(super) fn minimise(
         &self,
         oracle: &mut Oracle<'_>,
-        values: &Values,
+        values: &PerPiece,
     ) -> Result<Option<Step>, Stop> {
         oracle.conic(|| self.solve(values))
     }
 
-    fn solve(&self, values: &Values) -> Option<Step> {
+    fn solve(&self, values: &PerPiece) -> Option<Step> {
         let Region { lower, upper, .. } = self.region;
-        let n = lower.len();
-        let pieces = self.in_reach(values);
-        let fixed = self.region.variables(true).count();
-        let linear = pieces.len() + 2 * (n - fixed);
-        let rows = self.rows(values, &pieces);
-        let mut cones = vec![NonnegativeConeT(linear), SecondOrderConeT(values.residual.len() + 1)];
-        // As two inequalities a fixed variable would leave the interior-point method no interior.
-        cones.extend((fixed > 0).then_some(ZeroConeT(fixed)));
-        let mut q = vec![0.0; n];
-        q.extend([self.parts.max_weight, self.parts.norm_weight]);
-        let curvature = upper_triangle(self.curvature, n + 2);
+        let program = self.program(values);
+        let size = program.q.len();
+        let curvature = upper_triangle(self.curvature, size);
         let settings = DefaultSettings {
             verbose: false,
             tol_gap_abs: TOLERANCE,
@@ -111,73 +105,143 @@ impl Model<'_> {
             tol_feas: TOLERANCE,
             ..DefaultSettings::default()
         };
-        let a = rows.matrix(n + 2);
-        let mut solver = DefaultSolver::new(&curvature, &q, &a, &rows.b, &cones, settings).ok()?;
+        let a = program.rows.matrix(size);
+        let Program { q, rows, cones, .. } = &program;
+        let mut solver = DefaultSolver::new(&curvature, q, &a, &rows.b, cones, settings).ok()?;
         solver.solve();
         let solution = &solver.solution;
         if !matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
             return None;
         }
-        let mut lambda = DVector::zeros(values.pieces.len());
-        for (&p, multiplier) in pieces.iter().zip(&solution.z) {
-            lambda[p] = *multiplier;
-        }
         // Within the region to the last bit.
-        let d = DVector::from_column_slice(&solution.x[..n]).sup(lower).inf(upper);
-        let nu = &solution.z[linear + 1..linear + 1 + values.residual.len()];
-        let nu = -DVector::from_column_slice(nu);
-        Some(Step { cost: self.cost(values, &d), d, lambda, nu })
+        let d = DVector::from_column_slice(&solution.x[..lower.len()]).sup(lower).inf(upper);
+        let multipliers = program.multipliers(self.parts, &solution.z);
+        Some(Step { cost: self.cost(values, &d), d, multipliers })
     }
 
-    /// `T ≥ h_p + g_p · d`, the region, the cone, and the fixed variables, in this order.
-    fn rows(&self, values: &Values, pieces: &[usize]) -> Rows {
+    /// Rows of maxima, hinges, the region, norms and fixed variables, in this order.
+    fn program(&self, values: &PerPiece) -> Program {
         let Region { lower, upper, .. } = self.region;
-        let (duration, norm) = (lower.len(), lower.len() + 1);
-        let mut rows = Rows::default();
-        for &p in pieces {
-            let gradient = self.parts.pieces[p].gradient.iter().copied();
-            let slopes = gradient.enumerate().filter(|(_, slope)| *slope != 0.0);
-            rows.push(slopes.chain([(duration, -1.0)]), -values.pieces[p]);
+        let mut program = Program { q: vec![0.0; lower.len()], ..Program::default() };
+        for (k, term) in self.terms(Shape::Max) {
+            let pieces = self.largest_in_reach(k, &values[k]);
+            if !pieces.is_empty() {
+                let t = program.variable(self.weights[k]);
+                for p in pieces {
+                    program.bound([k, p], term, values[k][p], t);
+                }
+            }
+        }
+        for (k, term) in self.terms(Shape::Hinge) {
+            for (p, &value) in values[k].iter().enumerate() {
+                let [_, high] = self.range(&term.pieces[p], value);
+                if high > 0.0 {
+                    let s = program.variable(self.weights[k]);
+                    program.bound([k, p], term, value, s);
+                    program.rows.push([(s, -1.0)], 0.0);
+                }
+            }
         }
         for j in self.region.variables(false) {
-            rows.push([(j, 1.0)], upper[j]);
-            rows.push([(j, -1.0)], -lower[j]);
+            program.rows.push([(j, 1.0)], upper[j]);
+            program.rows.push([(j, -1.0)], -lower[j]);
         }
-        rows.push([(norm, -1.0)], 0.0);
-        for (k, residual) in values.residual.iter().enumerate() {
-            let row = self.parts.residual_jacobian.row(k);
-            rows.push(row.iter().map(|slope| -slope).enumerate(), *residual);
+        program.close(NonnegativeConeT);
+        for (k, term) in self.terms(Shape::Norm).filter(|(_, term)| !term.pieces.is_empty()) {
+            let t = program.variable(self.weights[k]);
+            program.rows.push([(t, -1.0)], 0.0);
+            for (p, (piece, value)) in term.pieces.iter().zip(&values[k]).enumerate() {
+                program.place_of.push(([k, p], program.rows.b.len()));
+                let slopes = piece.gradient.iter().map(|slope| -slope);
+                program.rows.push(slopes.enumerate(), *value);
+            }
+            program.close(SecondOrderConeT);
         }
+        // As two inequalities a fixed variable would leave the interior-point method no interior.
         for j in self.region.variables(true) {
-            rows.push([(j, 1.0)], lower[j]);
+            program.rows.push([(j, 1.0)], lower[j]);
         }
-        rows
+        program.close(ZeroConeT);
+        program
+    }
+
+    /// The terms of a shape, with their places.
+    fn terms(&self, shape: Shape) -> impl Iterator<Item = (usize, &Term)> {
+        self.parts.terms.iter().enumerate().filter(move |(_, term)| term.shape == shape)
     }
 
     /// The model's cost of a step.
-    fn cost(&self, values: &Values, d: &DVector<f64>) -> f64 {
-        let Linearisation { norm_weight, residual_jacobian, max_weight, pieces, .. } = self.parts;
-        let residual = &values.residual + residual_jacobian * d;
-        let pieces = pieces.iter().zip(&values.pieces);
-        let longest = pieces.map(|(piece, value)| value + piece.gradient.dot(d));
-        norm_weight * residual.norm()
-            + max_weight * longest.fold(0.0, f64::max)
-            + d.dot(&(self.curvature * d)) / 2.0
+    fn cost(&self, values: &PerPiece, d: &DVector<f64>) -> f64 {
+        let terms = self.parts.terms.iter().zip(self.weights).zip(values);
+        let cost = |((term, weight), values): ((&Term, &f64), &Vec<f64>)| {
+            let there = values.iter().zip(term.changes(d)).map(|(value, change)| value + change);
+            weight * term.shape.of(there)
+        };
+        terms.map(cost).sum::<f64>() + d.dot(&(self.curvature * d)) / 2.0
     }
 
-    /// The pieces that can be the largest somewhere within the region.
-    fn in_reach(&self, values: &Values) -> Vec<usize> {
-        let Region { lower, upper, .. } = self.region;
-        let range = |p: usize| {
-            let slopes = self.parts.pieces[p].gradient.iter().zip(lower.iter().zip(upper));
-            slopes.fold([values.pieces[p]; 2], |[low, high], (slope, (lower, upper))| {
-                let ends = [slope * lower, slope * upper];
-                [low + ends[0].min(ends[1]), high + ends[0].max(ends[1])]
-            })
-        };
-        let ranges: Vec<_> = (0..values.pieces.len()).map(range).collect();
+    /// The pieces of a maximum that can be the largest somewhere within the region.
+    fn largest_in_reach(&self, k: usize, values: &[f64]) -> Vec<usize> {
+        let pieces = self.parts.terms[k].pieces.iter().zip(values);
+        let ranges: Vec<_> = pieces.map(|(piece, value)| self.range(piece, *value)).collect();
         let floor = ranges.iter().map(|[low, _]| *low).fold(f64::NEG_INFINITY, f64::max);
         (0..ranges.len()).filter(|&p| ranges[p][1] >= floor).collect()
+    }
+
+    /// The least and the largest value of a piece within the region.
+    fn range(&self, piece: &Piece, value: f64) -> [f64; 2] {
+        let Region { lower, upper, .. } = self.region;
+        let slopes = piece.gradient.iter().zip(lower.iter().zip(upper));
+        slopes.fold([value; 2], |[low, high], (slope, (lower, upper))| {
+            let ends = [slope * lower, slope * upper];
+            [low + ends[0].min(ends[1]), high + ends[0].max(ends[1])]
+        })
+    }
+}
+
+/// A conic program: minimise `q · x + ½ xᵀ P x` with `b − A x` in the product of cones.
+#[derive(Default)]
+struct Program {
+    q: Vec<f64>,
+    rows: Rows,
+    cones: Vec<SupportedConeT<f64>>,
+    /// Rows that have a cone.
+    closed: usize,
+    /// Of pieces, by term and place in it, the row that holds its value.
+    place_of: Vec<([usize; 2], usize)>,
+}
+
+impl Program {
+    /// Adds a variable of this weight; its column.
+    fn variable(&mut self, weight: f64) -> usize {
+        self.q.push(weight);
+        self.q.len() - 1
+    }
+
+    /// Adds `x_column ≥ v + g · d` for a piece.
+    fn bound(&mut self, [k, p]: [usize; 2], term: &Term, value: f64, column: usize) {
+        self.place_of.push(([k, p], self.rows.b.len()));
+        let slopes = term.pieces[p].gradient.iter().copied().enumerate();
+        self.rows.push(slopes.filter(|(_, slope)| *slope != 0.0).chain([(column, -1.0)]), -value);
+    }
+
+    /// Puts the rows that have no cone into one.
+    fn close(&mut self, cone: impl FnOnce(usize) -> SupportedConeT<f64>) {
+        let count = self.rows.b.len() - self.closed;
+        self.cones.extend((count > 0).then(|| cone(count)));
+        self.closed += count;
+    }
+
+    /// The multipliers of all pieces from those of the rows; zero for pieces without a row.
+    fn multipliers(&self, parts: &Linearisation, z: &[f64]) -> PerPiece {
+        let zeros = |term: &Term| vec![0.0; term.pieces.len()];
+        let mut multipliers: PerPiece = parts.terms.iter().map(zeros).collect();
+        for &([k, p], row) in &self.place_of {
+            // The rows of a norm have the other sign.
+            let is_norm = parts.terms[k].shape == Shape::Norm;
+            multipliers[k][p] = if is_norm { -z[row] } else { z[row] };
+        }
+        multipliers
     }
 }
 

@@ -1,0 +1,218 @@
+//! Costs that are sums of convex functions of smooth pieces.
+
+use nalgebra::DVector;
+
+use super::failure::Failure;
+
+/// A convex function `φ` of the values `v` of a term's pieces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Shape {
+    /// `‖v‖`, the Euclidean norm.
+    Norm,
+    /// The largest `v_i`.
+    Max,
+    /// `Σ_i max(0, v_i)`.
+    Hinge,
+}
+
+impl Shape {
+    /// `φ(v)`; zero without a value, and NaN where one is NaN.
+    pub fn of(self, values: impl IntoIterator<Item = f64>) -> f64 {
+        let mut values = values.into_iter();
+        match self {
+            Self::Norm => values.fold(0.0, |sum, v| sum + v * v).sqrt(),
+            Self::Max => {
+                let Some(first) = values.next() else { return 0.0 };
+                values.fold(first, larger)
+            }
+            Self::Hinge => values.fold(0.0, |sum, v| sum + larger(v, 0.0)),
+        }
+    }
+}
+
+/// The larger of two numbers; NaN where one of them is.
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
+
+/// What tells a piece from the others of its term, the same at points that are near.
+///
+/// A maximum over a curve has one piece per local peak: its track says which curve it is on, its
+/// place where. As the point moves, so does the peak, and others appear and vanish. Pieces that never
+/// move have a track each, and any place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PieceId {
+    /// Pieces on different tracks are different.
+    pub track: u64,
+    /// Where on its track the piece is; a track is about one long.
+    pub place: f64,
+}
+
+impl PieceId {
+    /// How far on its track a piece may move in a step.
+    const SAME: f64 = 0.1;
+
+    /// A piece that is alone on its track.
+    pub fn alone(track: u64) -> Self {
+        Self { track, place: 0.0 }
+    }
+
+    /// The piece that continues this one at another point: the nearest on its track, if it is near.
+    pub fn continued<'a>(&self, there: &'a [Piece]) -> Option<&'a Piece> {
+        let distance = |p: &&Piece| (p.id.place - self.place).abs();
+        let same = there.iter().filter(|p| p.id.track == self.track);
+        same.min_by(|a, b| distance(a).total_cmp(&distance(b))).filter(|p| distance(p) < Self::SAME)
+    }
+}
+
+/// A smooth function, one of the `v_i`, at a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// What tells it from the others of its term.
+    pub id: PieceId,
+    /// Its value.
+    pub value: f64,
+    /// Its derivative by each variable.
+    pub gradient: DVector<f64>,
+}
+
+impl Piece {
+    /// A piece that is alone on its track.
+    pub fn new(track: u64, value: f64, gradient: impl Into<Vec<f64>>) -> Self {
+        Self { id: PieceId::alone(track), value, gradient: DVector::from_vec(gradient.into()) }
+    }
+}
+
+/// `w φ(v)` at a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Term {
+    /// `w`, finite and not negative.
+    pub weight: f64,
+    /// `φ`.
+    pub shape: Shape,
+    /// `v`. Of a maximum or a hinge, pieces that matter nowhere near may be left out.
+    pub pieces: Vec<Piece>,
+}
+
+impl Term {
+    /// `w ‖v‖`.
+    pub fn norm(weight: f64, pieces: Vec<Piece>) -> Self {
+        Self { weight, shape: Shape::Norm, pieces }
+    }
+
+    /// `w max_i v_i`.
+    pub fn max(weight: f64, pieces: Vec<Piece>) -> Self {
+        Self { weight, shape: Shape::Max, pieces }
+    }
+
+    /// `w Σ_i max(0, v_i)`.
+    pub fn hinge(weight: f64, pieces: Vec<Piece>) -> Self {
+        Self { weight, shape: Shape::Hinge, pieces }
+    }
+
+    /// `w φ(v)`.
+    pub fn cost(&self) -> f64 {
+        self.weight * self.value()
+    }
+
+    /// `φ(v)`.
+    pub fn value(&self) -> f64 {
+        self.shape.of(self.pieces.iter().map(|piece| piece.value))
+    }
+
+    /// By how much each piece changes over a step, to first order.
+    pub fn changes(&self, step: &DVector<f64>) -> Vec<f64> {
+        // Of the two orders in which the products can be summed the first is that of a matrix times a vector.
+        if self.shape == Shape::Norm {
+            let mut changes = vec![0.0; self.pieces.len()];
+            for (j, d) in step.iter().enumerate() {
+                for (change, piece) in changes.iter_mut().zip(&self.pieces) {
+                    *change += piece.gradient[j] * d;
+                }
+            }
+            changes
+        } else {
+            self.pieces.iter().map(|piece| piece.gradient.dot(step)).collect()
+        }
+    }
+}
+
+/// The terms of a cost at a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linearisation {
+    /// As many at every point, in the same order, with the same weights and shapes.
+    pub terms: Vec<Term>,
+}
+
+impl Linearisation {
+    /// `J`.
+    pub fn cost(&self) -> f64 {
+        self.terms.iter().map(Term::cost).sum()
+    }
+
+    /// Whether weights are sound and every gradient has so many components.
+    pub(super) fn check(&self, variables: usize) -> Result<(), Failure> {
+        for (k, term) in self.terms.iter().enumerate() {
+            let weight = term.weight;
+            if !(weight.is_finite() && weight >= 0.0) {
+                let expected = "expected a finite weight of zero or more";
+                return Err(format!("found the weight {weight} of term {k}, {expected}").into());
+            }
+            let lengths = term.pieces.iter().map(|piece| piece.gradient.len());
+            if let Some(found) = lengths.into_iter().find(|&found| found != variables) {
+                let place = format!("in term {k}, expected {variables}");
+                return Err(format!("found a gradient of {found} components {place}").into());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What the pieces weigh in a Lagrangian `Σ_k Σ_i λ_ki v_ki`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Multipliers {
+    /// For each term, in order, the pieces with multipliers other than zero. Those of a norm are of
+    /// length `w` at most, those of a maximum add up to `w`, each of a hinge is between zero and `w`.
+    pub terms: Vec<Vec<(PieceId, f64)>>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_have_their_values() {
+        for (shape, value) in [(Shape::Norm, 5.0), (Shape::Max, 3.0), (Shape::Hinge, 3.0)] {
+            assert_eq!(shape.of([3.0, -4.0]), value);
+            assert_eq!(shape.of([]), 0.0);
+            for values in [[f64::NAN, 1.0], [1.0, f64::NAN]] {
+                assert!(shape.of(values).is_nan(), "{shape:?} {values:?}");
+            }
+        }
+        assert_eq!(Shape::Max.of([-3.0, -4.0]), -3.0);
+    }
+
+    #[test]
+    fn pieces_are_continued_on_their_tracks() {
+        let piece = |track, place| Piece { id: PieceId { track, place }, ..Piece::new(0, 0.0, []) };
+        let there = [piece(1, 0.52), piece(2, 0.5), piece(1, 0.45), piece(1, 0.9)];
+        let continued =
+            |track, place| PieceId { track, place }.continued(&there).map(|p| p.id.place);
+        assert_eq!(continued(1, 0.5), Some(0.52));
+        assert_eq!(continued(2, 0.41), Some(0.5));
+        assert_eq!([continued(1, 0.7), continued(3, 0.5)], [None; 2]);
+    }
+
+    #[test]
+    fn misshapen_linearisations_are_refused() {
+        let told =
+            |term: Term| Linearisation { terms: vec![term] }.check(2).map_err(|f| f.to_string());
+        let piece = || Piece::new(0, 1.0, [1.0, 2.0]);
+        assert_eq!(told(Term::max(1.0, vec![piece()])), Ok(()));
+        let message = "found a gradient of 3 components in term 0, expected 2";
+        let long = Piece::new(0, 1.0, [0.0; 3]);
+        assert_eq!(told(Term::max(1.0, vec![piece(), long])), Err(message.to_owned()));
+        let message = "found the weight -1 of term 0, expected a finite weight of zero or more";
+        assert_eq!(told(Term::hinge(-1.0, vec![])), Err(message.to_owned()));
+    }
+}
