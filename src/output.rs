@@ -1,5 +1,6 @@
 //! Writing files whole or not at all.
 
+#[cfg(feature = "harness")]
 use std::collections::HashSet;
 use std::fs;
 use std::io::{self, Write as _};
@@ -18,6 +19,7 @@ pub struct FileError {
 }
 
 /// Whether [`write_file`] can write there: the folder takes new files, and no folder has the name.
+#[cfg(any(feature = "cli", feature = "harness"))]
 pub(crate) fn check_writable(path: &Path) -> Result<(), FileError> {
     let error = |source| FileError { action: "write", path: path.to_owned(), source };
     if path.is_dir() {
@@ -41,6 +43,7 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 }
 
 /// Makes a folder and those above it.
+#[cfg(feature = "harness")]
 pub(crate) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|source| FileError {
         action: "create",
@@ -50,6 +53,7 @@ pub(crate) fn create_folder(path: &Path) -> Result<(), FileError> {
 }
 
 /// Waits until what was renamed into a folder is on the disk under its new name.
+#[cfg(feature = "harness")]
 pub(crate) fn sync_folder(path: &Path) -> Result<(), FileError> {
     let error = |source| FileError { action: "flush", path: path.to_owned(), source };
     // Elsewhere a folder is nothing that can be opened.
@@ -62,6 +66,7 @@ pub(crate) fn sync_folder(path: &Path) -> Result<(), FileError> {
 
 /// Has a folder filled under a temporary name beside its own, then renames it. Nothing that is there
 /// is touched: the folder may exist, but only empty.
+#[cfg(feature = "harness")]
 pub(crate) fn write_folder<E: From<FileError>>(
     path: &Path,
     fill: impl FnOnce(&Path) -> Result<(), E>,
@@ -98,6 +103,7 @@ fn readable_by_all(mode: u32) -> tempfile::Builder<'static, 'static> {
 }
 
 /// A name, with a number where it is taken. Some file systems take capitals and small letters for the same.
+#[cfg(feature = "harness")]
 pub(crate) fn unlike(plain: &str, taken: &mut HashSet<String>) -> String {
     let mut name = plain.to_owned();
     for n in 2.. {
@@ -110,6 +116,7 @@ pub(crate) fn unlike(plain: &str, taken: &mut HashSet<String>) -> String {
 }
 
 /// A label as part of a file's name on any system: letters, digits, `-` and `_`, a hundred at most.
+#[cfg(feature = "harness")]
 pub(crate) fn file_name(label: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     label.trim().chars().map(plain).take(100).collect()
