@@ -1,0 +1,70 @@
+//! The stored columns: `results/README.md` lists those that there are, in their order, with what the program says of
+//! them, and stored tables have them.
+#![cfg(feature = "harness")]
+
+use std::fs;
+
+use driftless::experiment::schema::{Cell, Column, clocks, runs, traces};
+use driftless::experiment::{Experiment, Folder, Options, Quantity};
+use driftless::registry;
+use driftless::search::Watch;
+use polars::prelude::*;
+
+/// The rows of a table of columns.
+fn rows<'a>(columns: impl Iterator<Item = (&'a str, &'a str)>) -> String {
+    let row = |(name, meaning): (&str, &str)| format!("| `{name}` | {meaning} |\n");
+    columns.map(row).collect()
+}
+
+fn listed(columns: &[Column]) -> String {
+    let own = columns.iter().filter(|column| column.cell != Cell::OfSubject);
+    rows(own.map(|column| (column.name, column.meaning)))
+}
+
+fn described(quantities: &[Quantity]) -> String {
+    rows(quantities.iter().map(|quantity| (quantity.name.as_str(), quantity.meaning.as_str())))
+}
+
+#[test]
+fn the_page_of_results_lists_every_column() {
+    let page = fs::read_to_string("results/README.md").unwrap();
+    let task = Experiment::read(&Experiment::embedded(), &registry()).unwrap().plan().unwrap();
+    for expected in [
+        listed(runs::COLUMNS),
+        listed(traces::COLUMNS),
+        listed(clocks::COLUMNS),
+        described(task.facts()),
+        described(task.measures()),
+    ] {
+        assert!(page.contains(&expected), "results/README.md lacks\n{expected}");
+    }
+}
+
+/// The names of a table's columns; a subject's stand where the schema says.
+fn names(columns: &[Column], facts: &[Quantity], measures: &[Quantity]) -> Vec<String> {
+    let own = |column: &Column| match column.name {
+        runs::FACTS => facts.iter().map(|fact| fact.name.clone()).collect(),
+        runs::MEASURES => measures.iter().map(|measure| measure.name.clone()).collect(),
+        name => vec![name.to_owned()],
+    };
+    columns.iter().flat_map(own).collect()
+}
+
+#[test]
+fn stored_tables_have_the_columns_in_order() {
+    let document = Experiment::embedded();
+    let experiment = Experiment::read(&document, &registry()).unwrap();
+    let plan = experiment.with_budget(50.try_into().unwrap()).plan().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let results = Folder::create(folder.path(), plan, &registry()).unwrap();
+    results.run(Options::default(), &Watch::default(), &()).unwrap();
+    let (facts, measures) = (results.plan.facts(), results.plan.measures());
+    for (table, columns) in
+        [("runs", runs::COLUMNS), ("traces", traces::COLUMNS), ("clocks", clocks::COLUMNS)]
+    {
+        let file = fs::read_dir(folder.path().join(table)).unwrap().next().unwrap().unwrap();
+        let file = fs::File::open(file.path()).unwrap();
+        let frame = ParquetReader::new(file).finish().unwrap();
+        assert_eq!(frame.get_column_names(), names(columns, facts, measures), "{table}");
+    }
+}
