@@ -167,7 +167,7 @@ impl<'a> Oracle<'a> {
         self.best.as_ref()
     }
 
-    /// Evaluates one point.
+    /// Evaluates one point, whose length is the problem's dimension.
     pub fn evaluate(&mut self, x: &[f64]) -> Result<Evaluation, Stop> {
         self.check()?;
         self.check_dimension(x.len())?;
@@ -221,7 +221,8 @@ impl<'a> Oracle<'a> {
         if cut.is_some() { Err(Stop::BudgetSpent) } else { Ok(()) }
     }
 
-    /// Evaluates one point together with its first derivatives: one evaluation and one linearisation.
+    /// Evaluates one point together with its first derivatives: one evaluation and one linearisation. A
+    /// gradient of another length than the point's, or a weight that is negative or not finite, is a failure.
     pub fn linearise(&mut self, x: &[f64]) -> Result<Linearisation, Stop> {
         let composite = self.composite(x)?;
         self.begin();
@@ -232,7 +233,7 @@ impl<'a> Oracle<'a> {
         Ok(linearisation)
     }
 
-    /// The second derivative of a Lagrangian at a point.
+    /// The second derivative of a Lagrangian at a point, `n × n` for `n` variables.
     pub fn curvature(
         &mut self,
         x: &[f64],

@@ -11,7 +11,8 @@ pub trait Problem: Send + Sync {
     /// The box; its length is the problem's dimension.
     fn bounds(&self) -> &Bounds;
 
-    /// The cost of one point of the box. A failure ends the run; what it found before is kept.
+    /// The cost of one point of the box, which has as many components as the box has variables. A failure
+    /// ends the run; what it found before is kept.
     fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure>;
 
     /// The cost of many points: `each` is told every one as soon as it is known, in their order, and as
@@ -32,7 +33,7 @@ pub trait Problem: Send + Sync {
         None
     }
 
-    /// The same problem with derivatives, where it has them.
+    /// The same problem with derivatives, where it has them; always or never.
     fn composite(&self) -> Option<&dyn Composite> {
         None
     }
@@ -44,8 +45,8 @@ pub trait Composite: Problem {
     /// [`evaluate`](Problem::evaluate), to rounding.
     fn linearise(&self, x: &[f64]) -> Result<Linearisation, Failure>;
 
-    /// Second derivative of `Σ_k Σ_i λ_ki v_ki` at `x`, symmetric, to a few digits; the pieces are ones that
-    /// [`linearise`](Self::linearise) named there.
+    /// Second derivative of `Σ_k Σ_i λ_ki v_ki` at `x`, `n × n` for `n` variables and symmetric, to a few digits;
+    /// the pieces are ones that [`linearise`](Self::linearise) named there.
     fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure>;
 }
 

@@ -1,4 +1,4 @@
-//! Costs that are sums of convex functions of smooth pieces.
+//! Costs that are sums of convex functions of smooth pieces; the module's page has the mathematics.
 
 use nalgebra::DVector;
 
@@ -38,8 +38,8 @@ fn larger(a: f64, b: f64) -> f64 {
 /// What tells a piece from the others of its term, the same at points that are near.
 ///
 /// A maximum over a curve has one piece per local peak: its track says which curve it is on, its
-/// place where. As the point moves, so does the peak, and others appear and vanish. Pieces that never
-/// move have a track each, and any place.
+/// place where. As the point moves, so does the peak, and others appear and vanish. A piece that is
+/// there at every point has a track of its own. No two pieces of a term have the same id.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PieceId {
     /// Pieces on different tracks are different.
@@ -72,7 +72,7 @@ pub struct Piece {
     pub id: PieceId,
     /// Its value.
     pub value: f64,
-    /// Its derivative by each variable.
+    /// Its derivative by each variable, as many as the problem has.
     pub gradient: DVector<f64>,
 }
 
