@@ -65,7 +65,7 @@ def experiment(file, seeds, budget=None):
 
 
 def runs(folder):
-    """One row a run; `results/README.md` describes the columns."""
+    """One row per run; `results/README.md` describes the columns."""
     return pl.scan_parquet(folder / "runs" / "*.parquet").unique("key").collect().sort("optimiser", "instance", "seed")
 
 

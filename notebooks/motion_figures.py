@@ -10,8 +10,8 @@ KINDS = {"rate": "°/s", "acceleration": "°/s²", "jerk": "°/s³"}
 
 
 def read_motion(path):
-    """Times [s]; angle, rate, acceleration and jerk, a row a time and a column a joint [rad, s]; and the
-    base's quaternion w, x, y, z, a row a time."""
+    """Times [s]; angle, rate, acceleration and jerk, a row per time and a column per joint [rad, s]; and the
+    base's quaternion w, x, y, z, a row per time."""
     rows = pl.read_csv(path)
     joints = rows["joint"].n_unique()
     columns = {kind: rows[kind].to_numpy().reshape(-1, joints) for kind in ["angle", *KINDS]}
@@ -30,7 +30,7 @@ def zyx_deg(base):
 
 
 def draw_angles(axes, motion):
-    """Joint angles over time, a line a joint."""
+    """Joint angles over time, a line per joint."""
     axes.plot(motion["time"], np.degrees(motion["angle"]))
     axes.set(xlabel="time [s]", ylabel="joint angle [°]")
 

@@ -4,10 +4,10 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A real number, or one number a lane.
+/// A real number, or one number per lane.
 ///
 /// Kinematics, momentum and attitude are written once over this bound: `f64` evaluates one place of a
-/// path, a vector of the processor one place a lane. Every operation is rounded as that of `f64` is, so
+/// path, a vector of the processor one place per lane. Every operation is rounded as that of `f64` is, so
 /// that vectors of any number of lanes give the same bits. They round a product and a sum at once; one `f64`
 /// at a time does so only where the compiler knows that the processor can, and elsewhere differs in the last
 /// place.

@@ -10,7 +10,7 @@ use driftless::search::{Composite, Problem};
 use driftless::search::{Oracle, Rng, Stop, Watch};
 use nalgebra::{DMatrix, DVector};
 
-/// The best motion known with two terms a joint, which IPOPT finds too: `benches/peers/casadi`.
+/// The best motion known with two terms per joint, which IPOPT finds too: `benches/peers/casadi`.
 const BEST_KNOWN: f64 = 0.781_850;
 
 fn task(text: &str) -> Formulated {

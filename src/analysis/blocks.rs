@@ -29,7 +29,7 @@ impl Unit {
 /// What the tests stand on: final costs of all optimisers, block by block.
 #[derive(Debug)]
 pub(super) struct Blocks {
-    /// One row a block, one cost an optimiser.
+    /// One row per block, one cost per optimiser.
     pub(super) costs: Vec<Vec<f64>>,
     /// What to call each block.
     pub(super) names: Vec<String>,

@@ -1,4 +1,4 @@
-//! One line an optimiser and group of instances.
+//! One line per optimiser and group of instances.
 
 use polars::prelude::*;
 
@@ -7,7 +7,7 @@ use super::statistics::quantile;
 use super::targets::Targets;
 use crate::experiment::{Plan, Run};
 
-/// One line an optimiser and group of instances: quartiles of the best cost over the runs, failures
+/// One line per optimiser and group of instances: quartiles of the best cost over the runs, failures
 /// counted as infinite, and what the subject measures of the best run's point. A column for each target says how many runs reached their instance's. Costs are certified.
 pub fn summary(plan: &Plan, runs: &[Run], targets: &Targets) -> PolarsResult<DataFrame> {
     let groups = groups(plan, runs);

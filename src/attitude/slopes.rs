@@ -16,7 +16,7 @@ use crate::vec3::{Mat3, Vec3};
 pub struct RotationSlopes {
     /// The rotation, from the attitude at the start, in base axes.
     pub rotation: UnitQuaternion<f64>,
-    /// Angular change in base axes at the end \[rad\], one column a coefficient of the path.
+    /// Angular change in base axes at the end \[rad\], one column per coefficient of the path.
     pub by_coefficient: Matrix3xX<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! The command line, one file a verb.
+//! The command line, one file per verb.
 
 /// Prints a line to standard output; unlike `println!` it fails with an error, not a panic.
 macro_rules! say {

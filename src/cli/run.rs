@@ -29,7 +29,7 @@ pub(super) struct Run {
     /// Evaluations a run, instead of the file's
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     budget: Option<u64>,
-    /// Runs at a time [default: one a processor]
+    /// Runs at a time [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
     /// Only a disjoint part of the runs, such as 0/4; /4 takes the index from the scheduler that runs

@@ -10,7 +10,7 @@ use super::store::{Store, StoreError};
 /// How far an experiment is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Standing {
-    /// One entry an optimiser, in the plan's order.
+    /// One entry per optimiser, in the plan's order.
     pub tallies: Vec<Tally>,
     /// Stored runs that failed.
     pub failures: Vec<FailedRun>,

@@ -1,4 +1,4 @@
-//! Curves of optimisers from a table with a row a point.
+//! Curves of optimisers from a table with a row per point.
 
 use polars::prelude::*;
 

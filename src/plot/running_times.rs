@@ -70,7 +70,7 @@ pub(super) fn expected_running_time(
 const BEHIND: f64 = 1.3;
 const SHORTEST: f64 = 10.0;
 
-/// Performance or data profiles, a panel a target. `time` is the column of the abscissae.
+/// Performance or data profiles, a panel per target. `time` is the column of the abscissae.
 pub(super) fn profiles(
     frame: &DataFrame,
     looks: &Looks,

@@ -26,7 +26,7 @@ const ZERO: f64 = 1e-12;
 pub struct BestKnown {
     /// [`fingerprint`] of the task and the number of terms.
     pub fingerprint: String,
-    /// Free coefficients a joint.
+    /// Free coefficients per joint.
     pub terms: usize,
     /// The cost `J`, evaluated finely, to ten significant digits.
     pub j: f64,
@@ -35,7 +35,7 @@ pub struct BestKnown {
     /// The least cost found over motions of any shape, where somebody looked for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free_form_j: Option<f64>,
-    /// Bump coefficients, one row a joint.
+    /// Bump coefficients, one row per joint.
     pub coefficients: Vec<Vec<f64>>,
     /// The command that found it.
     pub found_by: String,

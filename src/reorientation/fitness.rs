@@ -55,7 +55,7 @@ pub struct Assessment {
 }
 
 impl Reorientation {
-    /// The task over the family with `terms` free coefficients a joint.
+    /// The task over the family with `terms` free coefficients per joint.
     ///
     /// # Panics
     ///

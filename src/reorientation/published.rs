@@ -135,7 +135,7 @@ impl ReplayFile {
                     let found = list.get_ref().len();
                     if found != joints {
                         let message =
-                            format!("found {found} values, expected {joints}, one a joint");
+                            format!("found {found} values, expected {joints}, one per joint");
                         return error(list.span(), message);
                     }
                 }
@@ -147,7 +147,7 @@ impl ReplayFile {
                 let terms = rows.first().map_or(0, Vec::len);
                 if terms == 0 || rows.len() != joints || rows.iter().any(|row| row.len() != terms) {
                     let message = format!(
-                        "expected {joints} rows, one a joint, of equally many coefficients"
+                        "expected {joints} rows, one per joint, of equally many coefficients"
                     );
                     return error(list.span(), message);
                 }
@@ -165,7 +165,7 @@ impl ReplayFile {
 enum Shape<'a> {
     /// `α_6` of all joints, then `α_7`.
     Alpha(Vec<f64>),
-    /// One row a joint.
+    /// One row per joint.
     Coefficients(&'a [Vec<Finite>]),
 }
 

@@ -15,7 +15,7 @@ use crate::trajectory::{Limits, Peaks, SinePolynomial};
 /// The paper's task and the default settings.
 pub(super) const DEFAULTS: &str = include_str!("defaults.toml");
 
-/// Most free coefficients a joint; beyond, powers of `t` no longer tell shapes apart.
+/// Most free coefficients per joint; beyond, powers of `t` no longer tell shapes apart.
 const MOST_TERMS: usize = 16;
 
 /// A file with one task.
@@ -32,7 +32,7 @@ pub struct TaskFile {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 pub struct TrajectoryTable {
-    /// Free coefficients a joint; two are the paper's.
+    /// Free coefficients per joint; two are the paper's.
     terms: Spanned<usize>,
     /// Magnus steps along the path during a search.
     #[serde(deserialize_with = "count::<10_000, _, _>")]
@@ -92,7 +92,7 @@ impl TaskFile {
 }
 
 impl TrajectoryTable {
-    /// Free coefficients a joint.
+    /// Free coefficients per joint.
     pub fn terms(&self) -> &Spanned<usize> {
         &self.terms
     }
@@ -147,7 +147,7 @@ impl BoxTable {
             }
             Some(widths) => {
                 let found = widths.get_ref().len();
-                let message = format!("found {found} half-widths, expected {terms}, one a term");
+                let message = format!("found {found} half-widths, expected {terms}, one per term");
                 return Err(document.error_at(widths.span(), message, None));
             }
         };

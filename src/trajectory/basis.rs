@@ -29,7 +29,7 @@ impl Basis {
         Self { polynomials, to_powers, from_powers }
     }
 
-    /// Number of bumps, which is the number of free coefficients a joint.
+    /// Number of bumps, which is the number of free coefficients per joint.
     pub fn terms(&self) -> usize {
         self.polynomials.len()
     }

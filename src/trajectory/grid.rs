@@ -42,7 +42,7 @@ impl<const N: usize> Grid<N> {
         self.table[first / MOST * self.rows..].chunks_exact(N)
     }
 
-    /// What bump `k` and its derivatives are from time `first` on, one time a lane.
+    /// What bump `k` and its derivatives are from time `first` on, one time per lane.
     #[inline(always)]
     pub(crate) fn bump<T: Lanes>(&self, k: usize, first: usize) -> [T; N] {
         let row = first / MOST * self.rows + (k + 1) * N;

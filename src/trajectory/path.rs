@@ -33,7 +33,7 @@ impl Span {
 pub struct Path<'a> {
     spans: &'a [Span],
     basis: &'a Basis,
-    /// The polynomials of the free part in powers of `x = 2τ − 1`, one row a joint.
+    /// The polynomials of the free part in powers of `x = 2τ − 1`, one row per joint.
     free: Vec<f64>,
 }
 

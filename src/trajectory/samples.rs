@@ -21,7 +21,7 @@ pub struct Samples {
     /// The number of times, as in the grid.
     times: usize,
     intervals: usize,
-    /// For every joint four rows, one number a time: rate, acceleration, jerk and one derivative more.
+    /// For every joint four rows, one number per time: rate, acceleration, jerk and one derivative more.
     rows: Vec<f64>,
     /// For every joint, of each order the largest magnitude among the samples.
     largest: Vec<[f64; 3]>,

@@ -35,7 +35,7 @@ impl SinePolynomial {
         self.spans.len()
     }
 
-    /// Free coefficients a joint.
+    /// Free coefficients per joint.
     pub fn terms(&self) -> usize {
         self.basis.terms()
     }
@@ -86,7 +86,7 @@ impl SinePolynomial {
         &coefficients[joint * self.terms()..(joint + 1) * self.terms()]
     }
 
-    /// The paper's `α_6 … , α_7 …, …` \[s⁻⁶, s⁻⁷, …\], one block a power, one value a joint.
+    /// The paper's `α_6 … , α_7 …, …` \[s⁻⁶, s⁻⁷, …\], one block per power, one value per joint.
     pub fn to_alpha(&self, coefficients: &[f64], duration: f64) -> Vec<f64> {
         let mut alpha = vec![0.0; self.dimension()];
         for (i, joint) in coefficients.chunks_exact(self.terms()).enumerate() {

@@ -30,7 +30,7 @@ fi
 program=${PROGRAM:-$target/release/driftless}
 results=$folder/results
 rm -rf "$results" "$folder"/*.png
-# Seeds and evaluations a run.
+# Seeds and evaluations per run.
 while read -r experiment seeds budget; do
     name=$(basename "$experiment")
     "$program" run "$experiment.toml" --out "$results/$name" --seeds "$seeds" --budget "$budget" \

@@ -77,7 +77,7 @@ class Limits:
         self.rows = sum(places.shape[1] for *_, places in self.parts)
 
     def first(self, z):
-        """Shares (rows) and their gradients, one column a row."""
+        """Shares (rows) and their gradients, one column per row."""
         found = [
             first.map(places.shape[1])(ca.repmat(z, 1, places.shape[1]), places)
             for first, _, places in self.parts

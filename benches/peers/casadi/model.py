@@ -57,7 +57,7 @@ class Link:
 
 
 class Task:
-    """Robot, ends, limits and weights; `terms` free coefficients a joint."""
+    """Robot, ends, limits and weights; `terms` free coefficients per joint."""
 
     def __init__(self):
         table = tomllib.loads((SOURCE / "problem/defaults.toml").read_text())

@@ -24,7 +24,7 @@ def plain(task):
 
 
 def path(task, joint, c, tau):
-    """A joint's angle and three derivatives by `τ` (eqs. 11–14), one row a time."""
+    """A joint's angle and three derivatives by `τ` (eqs. 11–14), one row per time."""
     bumps, step = basis(task.terms, tau)
     change = task.phase_change[joint]
     s, s1, s2, s3 = (ca.DM(b.T) @ c + change * f for b, f in zip(bumps, step))
@@ -36,7 +36,7 @@ def path(task, joint, c, tau):
 
 
 def error(task, own):
-    """The base's error `δq_b` at the end of the paths with these coefficients, one column a joint."""
+    """The base's error `δq_b` at the end of the paths with these coefficients, one column per joint."""
     paths = [path(task, joint, c, NODES) for joint, c in enumerate(own)]
     angles, rates, *_ = zip(*paths)
     y = ca.horzcat(*angles, *rates).T

@@ -1,7 +1,7 @@
 //! Statistics of a benchmark, as functions of plain slices.
 //!
 //! Costs and running times are better when lower. A run without success takes infinitely long, so
-//! every function here takes infinite values, and none turns them into something that is no number.
+//! every function here takes infinite values, and none turns them into NaN.
 
 mod bootstrap;
 mod cliques;

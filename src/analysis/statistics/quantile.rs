@@ -3,7 +3,7 @@
 /// Quantile by linear interpolation between order statistics, of values in ascending order: type 7 of
 /// Hyndman and Fan (1996), doi 10.1080/00031305.1996.10473566, and `NumPy`'s default.
 ///
-/// What lies between a finite and an infinite neighbour is infinite. Without values it is no number.
+/// What lies between a finite and an infinite neighbour is infinite. Without values it is NaN.
 pub fn quantile(sorted: &[f64], q: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let position = q.clamp(0.0, 1.0) * last as f64;
@@ -18,7 +18,7 @@ pub fn quartiles(values: impl Iterator<Item = f64>) -> [f64; 3] {
     [0.25, 0.5, 0.75].map(|q| quantile(&sorted, q))
 }
 
-/// The median of unsorted values; no number where there are none.
+/// The median of unsorted values; NaN where there are none.
 pub fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() {
         return f64::NAN;

@@ -34,7 +34,7 @@ fn curve<'a>(analysis: &Analysis<'a>, group: &[&Run]) -> Curve<'a> {
     }
 }
 
-/// One line an optimiser, group and place on the curve.
+/// One line per optimiser, group and place on the curve.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     let curves: Vec<Curve<'_>> =
         analysis.groups.iter().map(|group| curve(analysis, group)).collect();

@@ -46,7 +46,7 @@ impl Times {
 /// A curve: the optimiser's and the group's label, and the times behind it.
 type Curve<'a> = ([&'a str; 2], Times);
 
-/// One curve an optimiser and group, and one an optimiser over all.
+/// One curve per optimiser and group, and one per optimiser over all.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     let budget = analysis.runs.iter().map(|run| run.budget).max().unwrap_or(1);
     let grid = grid(10.0 * budget as f64);

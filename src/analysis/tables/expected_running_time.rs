@@ -15,7 +15,7 @@ struct Line<'a> {
     difference: f64,
 }
 
-/// One line an optimiser, group and target.
+/// One line per optimiser, group and target.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     let of = |group| differences().map(move |difference| Line { group, difference });
     let lines: Vec<Line<'_>> = analysis.groups.iter().flat_map(|group| of(group)).collect();

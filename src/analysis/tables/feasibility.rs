@@ -7,7 +7,7 @@ use crate::analysis::statistics::quartiles;
 use crate::exhibit::Table;
 use crate::experiment::Run;
 
-/// One line a group and optimiser.
+/// One line per group and optimiser.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     let groups = &analysis.groups;
     let first = |run: &&Run| run.first_feasible.map_or(f64::INFINITY, |first| first as f64);

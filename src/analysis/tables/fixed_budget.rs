@@ -8,7 +8,7 @@ use crate::analysis::grouped::Analysis;
 use crate::analysis::statistics::{median, quartiles};
 use crate::exhibit::Table;
 
-/// One line a group, number of evaluations and optimiser.
+/// One line per group, number of evaluations and optimiser.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     struct Line<'a> {
         labels: [&'a str; 2],

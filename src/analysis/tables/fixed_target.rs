@@ -8,7 +8,7 @@ use crate::analysis::grouped::{Analysis, trial};
 use crate::analysis::statistics::{Trial, expected_running_time, quartiles};
 use crate::exhibit::Table;
 
-/// One line an instance and target.
+/// One line per instance and target.
 pub(super) fn targets(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     let mut columns = (vec![], vec![], vec![], vec![]);
     for (i, (instance, values)) in
@@ -41,7 +41,7 @@ struct Line<'a> {
     trials: Vec<Trial>,
 }
 
-/// One line a group, target and optimiser.
+/// One line per group, target and optimiser.
 pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
     let lines = lines(analysis);
     let intervals: Vec<[f64; 2]> =

@@ -1,4 +1,4 @@
-//! The tables of a report, one file a table.
+//! The tables of a report, one file per table.
 
 mod best;
 mod convergence;

@@ -6,7 +6,7 @@ use crate::analysis::blocks::Blocks;
 use crate::analysis::grouped::Analysis;
 use crate::exhibit::Table;
 
-/// One line a pair.
+/// One line per pair.
 pub(super) fn table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsResult<Table> {
     let pairs = &blocks.pairs;
     let frame = df!(

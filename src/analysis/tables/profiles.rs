@@ -8,7 +8,7 @@ use crate::analysis::grouped::Analysis;
 use crate::analysis::statistics::{ProfileStep, data_profiles, performance_profiles};
 use crate::exhibit::Table;
 
-/// Both profiles, a curve an optimiser and target. A problem is an instance with a seed; those that an
+/// Both profiles, a curve per optimiser and target. A problem is an instance with a seed; those that an
 /// optimiser has not tried yet are left out.
 pub(super) fn tables(analysis: &Analysis<'_>) -> PolarsResult<[Table; 2]> {
     let (mut performance, mut data) = (Curves::default(), Curves::default());

@@ -29,7 +29,7 @@ pub(super) fn friedman_table(blocks: &Blocks) -> PolarsResult<Table> {
     Ok(Table::of("friedman", caption, frame))
 }
 
-/// One line an optimiser, the best first.
+/// One line per optimiser, the best first.
 pub(super) fn table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsResult<Table> {
     let ranks = &blocks.friedman.mean_ranks;
     let groups = cliques(ranks, |a, b| blocks.differ(a, b));
@@ -52,7 +52,7 @@ pub(super) fn table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsResult<Ta
     Ok(Table::of("ranks", caption, frame))
 }
 
-/// The costs that the tests compare, one line a block.
+/// The costs that the tests compare, one line per block.
 pub(super) fn blocks_table(analysis: &Analysis<'_>, blocks: &Blocks) -> PolarsResult<Table> {
     let optimisers = 0..analysis.plan.optimisers.len();
     let mut block = "block".to_owned();

@@ -3,7 +3,7 @@
 //! ```text
 //! results/NAME/traces/BATCH.parquet   improvements of the best cost
 //! results/NAME/clocks/BATCH.parquet   the wall time of each of them
-//! results/NAME/runs/BATCH.parquet     one row a run; it is written last, so a batch that has it is whole
+//! results/NAME/runs/BATCH.parquet     one row per run; it is written last, so a batch that has it is whole
 //! ```
 //!
 //! A batch is one run, named by its key, or several; it is there once it is in all three folders.

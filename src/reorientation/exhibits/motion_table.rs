@@ -5,7 +5,7 @@ use polars::prelude::*;
 use crate::exhibit::Table;
 use crate::reorientation::motion::Motion;
 
-/// One row a time and joint: time \[s\], joint, angle \[rad\] and its derivatives \[rad, s\], and the base's attitude as a
+/// One row per time and joint: time \[s\], joint, angle \[rad\] and its derivatives \[rad, s\], and the base's attitude as a
 /// quaternion that turns base axes into inertial axes.
 pub(in crate::reorientation) fn motion_table(motion: &Motion) -> PolarsResult<Table> {
     let places = || {

@@ -21,7 +21,7 @@ pub(super) enum Swept {
     AccelerationLimit,
     /// Limit on jerks.
     JerkLimit,
-    /// Free coefficients a joint.
+    /// Free coefficients per joint.
     Terms,
 }
 

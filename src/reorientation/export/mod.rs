@@ -20,7 +20,7 @@ pub const INTERVALS: usize = 500;
 /// A format for one motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotionFormat {
-    /// Comma-separated values, one row a time and joint.
+    /// Comma-separated values, one row per time and joint.
     Csv,
     /// The same table as Parquet.
     Parquet,
