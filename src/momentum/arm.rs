@@ -1,9 +1,7 @@
 //! The base's angular velocity alone, the inner loop of everything: one inward sweep.
 
 use super::RigidBody;
-use super::assembly::assemble;
 use crate::lanes::{Block, Lanes};
-use crate::robot::Robot;
 use crate::scalar::Scalar;
 use crate::vec3::{Sym3, Vec3};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -134,11 +132,6 @@ struct Outer<T> {
 }
 
 impl Arm {
-    /// From a robot.
-    pub fn new(robot: &Robot) -> Self {
-        assemble(robot)
-    }
-
     /// Turns vectors along the mount's axes into base axes.
     pub fn mount(&self) -> UnitQuaternion<f64> {
         self.mount

@@ -311,34 +311,37 @@ fn gather(body: &mut RigidBody<f64>, Step { begin, way, .. }: &Step, mass: f64) 
     body.inertia += Sym3::point(end, end * mass);
 }
 
-/// The constants of a robot's sweep.
-pub(super) fn assemble(robot: &Robot) -> Arm {
-    let parts = Parts::of(robot);
-    let assembly = Assembly::new(&parts);
-    let back = parts.mount.inverse();
-    let Body { mass, inertia } = robot.base();
-    let mut base = body(*mass, back.translation, inertia, &parts.mount.rotation);
-    if let Some(fixed) = parts.carried_by(None, &back) {
-        base += fixed;
-    }
-    let mut branches = Vec::new();
-    for &root in &parts.roots {
-        let step = parts.movers[root].step;
-        if let Some(branch) = assembly.branch(root, &step) {
-            gather(&mut base, &step, assembly.masses[root]);
-            branches.push(branch);
+impl Arm {
+    /// From a robot.
+    pub fn new(robot: &Robot) -> Self {
+        let parts = Parts::of(robot);
+        let assembly = Assembly::new(&parts);
+        let back = parts.mount.inverse();
+        let Body { mass, inertia } = robot.base();
+        let mut base = body(*mass, back.translation, inertia, &parts.mount.rotation);
+        if let Some(fixed) = parts.carried_by(None, &back) {
+            base += fixed;
         }
-    }
-    base.mass += parts.roots.iter().map(|root| assembly.masses[*root]).sum::<f64>();
-    let links: Vec<_> = parts.order().into_iter().map(|mover| assembly.link(mover)).collect();
-    let branch_count = assembly.branches.iter().flatten().count();
-    let turns = |link: &ArmLink| matches!(link.motion, Motion::Turn(_)) && link.way.bend.is_none();
-    Arm {
-        is_plain: branch_count == 0 && links.iter().all(turns),
-        links,
-        base,
-        branches,
-        branch_count,
-        mount: UnitQuaternion::from_rotation_matrix(&parts.mount.rotation),
+        let mut branches = Vec::new();
+        for &root in &parts.roots {
+            let step = parts.movers[root].step;
+            if let Some(branch) = assembly.branch(root, &step) {
+                gather(&mut base, &step, assembly.masses[root]);
+                branches.push(branch);
+            }
+        }
+        base.mass += parts.roots.iter().map(|root| assembly.masses[*root]).sum::<f64>();
+        let links: Vec<_> = parts.order().into_iter().map(|mover| assembly.link(mover)).collect();
+        let branch_count = assembly.branches.iter().flatten().count();
+        let turns =
+            |link: &ArmLink| matches!(link.motion, Motion::Turn(_)) && link.way.bend.is_none();
+        Self {
+            is_plain: branch_count == 0 && links.iter().all(turns),
+            links,
+            base,
+            branches,
+            branch_count,
+            mount: UnitQuaternion::from_rotation_matrix(&parts.mount.rotation),
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::path::windowed;
+use super::window::windowed;
 
 /// The bumps `64 τ³(1 − τ)³ P_k(x) = (1 − x²)³ P_k(x)`, `x = 2τ − 1`, with `P_k` orthonormal for the weight `(1 − x²)⁶` and `P_0 = 1`:
 /// Gegenbauer polynomials with λ = 13/2. A unit of any coefficient moves the phase equally far in

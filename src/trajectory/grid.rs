@@ -1,7 +1,8 @@
 //! A family's phases at fixed times, in lanes.
 
 use super::family::Family;
-use super::path::{AtPhase, step};
+use super::path::AtPhase;
+use super::window::step;
 use crate::lanes::{Block, Lanes, MOST};
 use crate::scalar::{Pair, Scalar};
 

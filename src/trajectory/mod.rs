@@ -10,6 +10,7 @@ mod grid;
 mod path;
 mod peaks;
 mod samples;
+mod window;
 
 pub use basis::Basis;
 pub use family::Family;

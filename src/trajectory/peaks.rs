@@ -1,8 +1,5 @@
 //! The largest rate, acceleration and jerk over continuous time, and the duration they allow.
 
-use super::family::Family;
-use super::samples::Sampler;
-
 /// Largest `|θ'|`, `|θ''|`, `|θ'''|` of each joint over the whole path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Peaks(pub Vec<[Peak; 3]>);
@@ -41,14 +38,6 @@ pub struct LocalPeak {
 }
 
 impl Peaks {
-    /// The peaks of the path with these coefficients in normalised time \[rad\].
-    pub fn of(family: &Family, coefficients: &[f64], intervals: usize) -> Self {
-        let sampler = Sampler::new(family, intervals);
-        let mut samples = sampler.samples(family.joints());
-        sampler.sample::<f64>(family, coefficients, &mut samples);
-        samples.peaks(&family.path(coefficients))
-    }
-
     /// The same path's peaks when it lasts `duration` seconds \[rad/s, rad/s², rad/s³\].
     #[must_use]
     pub fn over(&self, duration: f64) -> Self {

@@ -93,6 +93,16 @@ impl Sampler {
     }
 }
 
+impl Peaks {
+    /// The peaks of the path with these coefficients in normalised time \[rad\].
+    pub fn of(family: &Family, coefficients: &[f64], intervals: usize) -> Self {
+        let sampler = Sampler::new(family, intervals);
+        let mut samples = sampler.samples(family.joints());
+        sampler.sample::<f64>(family, coefficients, &mut samples);
+        samples.peaks(&family.path(coefficients))
+    }
+}
+
 #[inline(always)]
 fn largest_lane<T: Lanes>(lanes: T) -> f64 {
     lanes.numbers().into_iter().fold(0.0, Scalar::larger)
