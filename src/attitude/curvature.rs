@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, Matrix3xX, Vector3};
 
 use super::node::{Evaluator, Node};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, MOST};
 use crate::robot::Robot;
 use crate::so3::{self, Quat};
-use crate::trajectory::{Family, Grid};
+use crate::trajectory::Family;
 use crate::vec3::{Mat3, Vec3};
 
 /// How the end of a path turns with its coefficients, to second order.
@@ -24,10 +24,12 @@ const STEP: f64 = 1e-5;
 
 /// Second derivatives by the midpoint rule: of second order, so for a few digits.
 #[derive(Debug, Clone)]
-pub struct Midpoints {
+pub struct Midpoints<F: Family> {
     steps: usize,
     /// Filled up with the path's start, where nothing depends on coefficients.
-    grid: Grid<2>,
+    nodes: F::Nodes,
+    /// How many times these are.
+    times: usize,
 }
 
 /// As many midpoints as there are lanes.
@@ -37,11 +39,11 @@ struct Part<T> {
     node: Node<T>,
 }
 
-impl Midpoints {
+impl<F: Family> Midpoints<F> {
     /// At the middles of so many steps.
-    pub fn new(family: &Family, steps: usize) -> Self {
+    pub fn new(family: &F, steps: usize) -> Self {
         let times = (0..steps).map(|i| (i as f64 + 0.5) / steps as f64);
-        Self { steps, grid: Grid::new(family, times) }
+        Self { steps, nodes: family.nodes(times), times: steps.next_multiple_of(2 * MOST) }
     }
 
     /// First and second derivative.
@@ -56,16 +58,16 @@ impl Midpoints {
     pub fn curvature<T: Lanes>(
         &self,
         robot: &Robot,
-        family: &Family,
+        family: &F,
         coefficients: &[f64],
         p: &Vector3<f64>,
     ) -> RotationCurvature {
         let width = 1.0 / self.steps as f64;
-        let mut evaluator = Evaluator::<T>::new(robot, family);
+        let mut evaluator = Evaluator::<T, F>::new(robot, family);
         let mut parts = Vec::new();
-        let mut following = vec![Quat::identity(); self.grid.times()];
-        for first in (0..self.grid.times()).step_by(T::COUNT) {
-            let phases = evaluator.phases(&self.grid, first, coefficients);
+        let mut following = vec![Quat::identity(); self.times];
+        for first in (0..self.times).step_by(T::COUNT) {
+            let phases = evaluator.phases(&self.nodes, first, coefficients);
             let node = evaluator.evaluate(&phases);
             so3::exp(node.rate.times(width / 2.0)).spread(&mut following[first..]);
             parts.push(Part { first, phases, node });
@@ -79,7 +81,7 @@ impl Midpoints {
 
         let dimension = family.dimension();
         let mut curvature = DMatrix::zeros(dimension, dimension);
-        let mut slopes = vec![Matrix3xX::zeros(dimension); self.grid.times()];
+        let mut slopes = vec![Matrix3xX::zeros(dimension); self.times];
         for part in parts {
             let turn = Quat::<T>::gather(&following[part.first..]);
             let turn_back = turn.inverse().matrix().times(width);
@@ -100,17 +102,16 @@ impl Midpoints {
     #[inline(always)]
     fn add_slopes<T: Lanes>(
         &self,
-        family: &Family,
+        family: &F,
         Part { first, node, .. }: &Part<T>,
         turn: Mat3<T>,
         slopes: &mut [Matrix3xX<f64>],
     ) {
-        let terms = family.terms();
         for joint in 0..family.joints() {
-            for k in 0..terms {
-                let [bump, slope] = self.grid.bump(k, *first);
+            for k in family.support::<T>(&self.nodes, joint, *first) {
+                let [bump, slope] = family.bump::<T>(&self.nodes, joint, k, *first);
                 let change = node.by_phase[joint] * bump + node.by_phase_rate[joint] * slope;
-                let column = joint * terms + k;
+                let column = family.coefficients_of(joint).start + k;
                 let each = (turn * change).lanes();
                 for (own, change) in slopes[*first..].iter_mut().zip(&each[..T::COUNT]) {
                     own.set_column(column, &Vector3::from(*change));
@@ -124,16 +125,22 @@ impl Midpoints {
     #[inline(always)]
     fn add_bend<T: Lanes>(
         &self,
-        evaluator: &mut Evaluator<'_, T>,
-        family: &Family,
+        evaluator: &mut Evaluator<'_, T, F>,
+        family: &F,
         Part { first, mut phases, node }: Part<T>,
         p: Vec3<T>,
         sum: &mut DMatrix<f64>,
     ) {
-        let (terms, joints) = (family.terms(), family.joints());
-        let mut bumps: Vec<[T; 2]> = Vec::with_capacity(terms);
-        for k in 0..terms {
-            bumps.push(self.grid.bump(k, first));
+        let joints = family.joints();
+        // Joint by joint, each with the place of its coefficient among all.
+        let mut bumps: Vec<(usize, [T; 2])> = Vec::with_capacity(family.dimension());
+        let mut of_joint = Vec::with_capacity(joints);
+        for joint in 0..joints {
+            let (own, start) = (family.coefficients_of(joint).start, bumps.len());
+            for k in family.support::<T>(&self.nodes, joint, first) {
+                bumps.push((own + k, family.bump(&self.nodes, joint, k, first)));
+            }
+            of_joint.push(start..bumps.len());
         }
         for j in 0..joints {
             let here = phases[j];
@@ -144,10 +151,10 @@ impl Midpoints {
                 let per_step = T::of(1.0 / STEP);
                 let phase = p.dot(beside.by_phase[i] - node.by_phase[i]) * per_step;
                 let mixed = p.dot(beside.by_phase_rate[i] - node.by_phase_rate[i]) * per_step;
-                for (k, &[value, slope]) in bumps.iter().enumerate() {
+                for &(k, [value, slope]) in &bumps[of_joint[i].clone()] {
                     let row = value * phase + (slope + slope) * mixed;
-                    for (l, &[other, _]) in bumps.iter().enumerate() {
-                        let entry = &mut sum[(i * terms + k, j * terms + l)];
+                    for &(l, [other, _]) in &bumps[of_joint[j].clone()] {
+                        let entry = &mut sum[(k, l)];
                         // One place after the other, whatever the number of lanes.
                         for place in &(row * other).numbers()[..T::COUNT] {
                             *entry += place;
@@ -163,6 +170,7 @@ impl Midpoints {
 mod tests {
     use super::*;
     use crate::robot::Robot;
+    use crate::trajectory::SinePolynomial;
 
     /// Any number of steps, so however many lanes stay idle, comes near what many steps give.
     #[test]
@@ -171,7 +179,7 @@ mod tests {
         let robot = Robot::from_document(&document).unwrap();
         let ranges: Vec<_> = robot.joints().map(|joint| joint.range).collect();
         let (start, goal) = ([0.2, 0.5, 0.8, -0.3, -0.4, 0.7], [0.7, 1.0, 1.5, -0.2, -0.5, 1.0]);
-        let family = Family::new(&ranges, &start, &goal, 2);
+        let family = SinePolynomial::new(&ranges, &start, &goal, 2);
         let coefficients: Vec<f64> = (0..12).map(|i| 0.03 * f64::from(i) - 0.2).collect();
         let p = Vector3::new(0.4, -0.7, 0.6);
         let curvature = |steps| {

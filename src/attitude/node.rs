@@ -3,7 +3,7 @@
 use crate::lanes::Lanes;
 use crate::momentum::RateSlopes;
 use crate::robot::Robot;
-use crate::trajectory::{AtPhase, Family, Grid};
+use crate::trajectory::{AtPhase, Family};
 use crate::vec3::Vec3;
 
 /// The base's rate `ω` \[rad\], by normalised time, with its derivatives by each joint's phase `s` and
@@ -17,18 +17,18 @@ pub(super) struct Node<T> {
 }
 
 /// Room to evaluate nodes in.
-pub(super) struct Evaluator<'a, T> {
+pub(super) struct Evaluator<'a, T, F> {
     robot: &'a Robot,
-    family: &'a Family,
+    family: &'a F,
     joints: Vec<AtPhase<T>>,
     angles: Vec<T>,
     rates: Vec<T>,
     slopes: RateSlopes<T>,
 }
 
-impl<'a, T: Lanes> Evaluator<'a, T> {
+impl<'a, T: Lanes, F: Family> Evaluator<'a, T, F> {
     #[inline(always)]
-    pub(super) fn new(robot: &'a Robot, family: &'a Family) -> Self {
+    pub(super) fn new(robot: &'a Robot, family: &'a F) -> Self {
         let joints = robot.joint_count();
         let zeros = vec![T::of(0.0); joints];
         Self {
@@ -43,11 +43,16 @@ impl<'a, T: Lanes> Evaluator<'a, T> {
 
     /// The phases of all joints, with their derivatives, from a place in a grid on.
     #[inline(always)]
-    pub(super) fn phases(&self, grid: &Grid<2>, place: usize, coefficients: &[f64]) -> Vec<[T; 2]> {
+    pub(super) fn phases(
+        &self,
+        nodes: &F::Nodes,
+        place: usize,
+        coefficients: &[f64],
+    ) -> Vec<[T; 2]> {
         let mut phases = Vec::with_capacity(self.family.joints());
         for joint in 0..self.family.joints() {
-            let own = self.family.of_joint(joint, coefficients);
-            phases.push(self.family.phase(grid, place, joint, own));
+            let own = &coefficients[self.family.coefficients_of(joint)];
+            phases.push(self.family.phase(nodes, place, joint, own));
         }
         phases
     }

@@ -8,7 +8,7 @@ use super::{GAUSS, gauss_moments, magnus};
 use crate::lanes::{Lanes, MOST};
 use crate::momentum::{Arm, JointState};
 use crate::so3::{self, Quat};
-use crate::trajectory::{Family, Grid};
+use crate::trajectory::Family;
 use crate::vec3::Vec3;
 
 /// Nodes of a panel, at which the base's rate is evaluated.
@@ -29,18 +29,18 @@ const NODE_PLACES: [f64; NODES / 2] =
 /// moments of three sixth-order Magnus steps. Six nodes a panel of three steps are as good as nine, three
 /// for every step.
 #[derive(Debug, Clone)]
-pub struct Rollout {
+pub struct Rollout<F: Family> {
     pub(super) panels: usize,
     /// For every [`MOST`] panels and each node as many times, those of the panels. A panel beyond the
     /// last stands still at the path's start.
-    pub(super) grid: Grid<2>,
+    pub(super) nodes: F::Nodes,
     /// `moments[s][k][n]`: what the rate at node `n` adds to the moment `a_k` of step `s`.
     pub(super) moments: [[[f64; NODES]; 3]; STEPS],
 }
 
-impl Rollout {
+impl<F: Family> Rollout<F> {
     /// With so many Magnus steps, rounded up to whole panels.
-    pub fn new(family: &Family, steps: usize) -> Self {
+    pub fn new(family: &F, steps: usize) -> Self {
         let panels = steps.div_ceil(STEPS);
         let places = nodes();
         let times = (0..panels).step_by(MOST).flat_map(|first| {
@@ -50,7 +50,7 @@ impl Rollout {
                 })
             })
         });
-        Self { panels, grid: Grid::new(family, times), moments: moments(&places, panels) }
+        Self { panels, nodes: family.nodes(times), moments: moments(&places, panels) }
     }
 
     /// Where in the grid the panels from `first` on have their times of a node.
@@ -66,7 +66,7 @@ impl Rollout {
     pub fn net_rotation<T: Lanes>(
         &self,
         arm: &Arm,
-        family: &Family,
+        family: &F,
         coefficients: &[f64],
         joints: &mut Vec<JointState>,
     ) -> UnitQuaternion<f64> {
@@ -100,7 +100,7 @@ impl Rollout {
     fn drive<T: Lanes>(
         &self,
         arm: &Arm,
-        family: &Family,
+        family: &F,
         coefficients: &[f64],
         first: usize,
         joints: &mut [JointState],
@@ -110,8 +110,8 @@ impl Rollout {
             let places = [2 * pair, 2 * pair + 1].map(|node| Self::place(first, node));
             for (place, link) in arm.links().iter().enumerate() {
                 let joint = link.joint();
-                let coefficients = family.of_joint(joint, coefficients);
-                let phases = family.phases::<T, 2>(&self.grid, places, joint, coefficients);
+                let own = &coefficients[family.coefficients_of(joint)];
+                let phases = family.phase_pair::<T>(&self.nodes, places, joint, own);
                 let at = family.at_phase(joint, phases);
                 let [a, b, c] = link.state(at.angle, at.rate);
                 near[place].store([a.0, b.0, c.0]);

@@ -29,7 +29,7 @@ struct Panels<T> {
     steps: [Quat<T>; STEPS],
 }
 
-impl Rollout {
+impl<F: Family> Rollout<F> {
     /// [`net_rotation`](Self::net_rotation) with its derivatives.
     ///
     /// A change of the rotation vector `Ω` of one step turns the end by `Qᵀ J(Ω) dΩ`, where `J` is the
@@ -38,10 +38,10 @@ impl Rollout {
     pub fn slopes<T: Lanes>(
         &self,
         robot: &Robot,
-        family: &Family,
+        family: &F,
         coefficients: &[f64],
     ) -> RotationSlopes {
-        let mut evaluator = Evaluator::<T>::new(robot, family);
+        let mut evaluator = Evaluator::<T, F>::new(robot, family);
         let mut all = Vec::new();
         let mut rotations = Vec::new();
         for first in (0..self.panels).step_by(T::COUNT) {
@@ -77,14 +77,14 @@ impl Rollout {
     #[inline(always)]
     fn panels<T: Lanes>(
         &self,
-        evaluator: &mut Evaluator<'_, T>,
+        evaluator: &mut Evaluator<'_, T, F>,
         coefficients: &[f64],
         first: usize,
     ) -> Panels<T> {
         let mut nodes = Vec::with_capacity(NODES);
         let mut rates = [Vec3::zero(); NODES];
         for (n, rate) in rates.iter_mut().enumerate() {
-            let phases = evaluator.phases(&self.grid, Self::place(first, n), coefficients);
+            let phases = evaluator.phases(&self.nodes, Self::place(first, n), coefficients);
             let node = evaluator.evaluate(&phases);
             *rate = node.rate;
             nodes.push(node);
@@ -103,7 +103,7 @@ impl Rollout {
     #[inline(always)]
     fn turns<T: Lanes>(
         &self,
-        family: &Family,
+        family: &F,
         panels: &Panels<T>,
         mut following: Quat<T>,
     ) -> Vec<Vec3<T>> {
@@ -120,16 +120,16 @@ impl Rollout {
             }
             following = panels.steps[step].then(following);
         }
-        let terms = family.terms();
         let mut sums = vec![Vec3::zero(); family.dimension()];
         for (n, node) in panels.nodes.iter().enumerate() {
             let place = Self::place(panels.first, n);
             for joint in 0..family.joints() {
                 let by_phase = turns[n] * node.by_phase[joint];
                 let by_phase_rate = turns[n] * node.by_phase_rate[joint];
-                for k in 0..terms {
-                    let [bump, slope] = self.grid.bump(k, place);
-                    sums[joint * terms + k] += by_phase * bump + by_phase_rate * slope;
+                let first = family.coefficients_of(joint).start;
+                for k in family.support::<T>(&self.nodes, joint, place) {
+                    let [bump, slope] = family.bump::<T>(&self.nodes, joint, k, place);
+                    sums[first + k] += by_phase * bump + by_phase_rate * slope;
                 }
             }
         }

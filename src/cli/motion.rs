@@ -12,7 +12,7 @@ use crate::output::check_writable;
 use crate::output::create_folder;
 use crate::reorientation::{Assessment, Motion, Reorientation};
 use crate::reorientation::{INTERVALS, MotionFormat, write_motion};
-use crate::trajectory::Family;
+use crate::trajectory::SinePolynomial;
 
 /// Where to write a motion.
 #[derive(Debug, Args)]
@@ -118,7 +118,7 @@ pub(super) struct ShapeJson {
 }
 
 impl ShapeJson {
-    pub(super) fn new(family: &Family, coefficients: &[f64], duration: f64) -> Self {
+    pub(super) fn new(family: &SinePolynomial, coefficients: &[f64], duration: f64) -> Self {
         let alpha = family.to_alpha(coefficients, duration);
         let mut powers = alpha.chunks_exact(family.joints()).map(<[f64]>::to_vec);
         let two = family.terms() == 2;

@@ -7,22 +7,32 @@ use super::measure::Tables;
 use crate::attitude::{RotationCurvature, RotationSlopes};
 use crate::lanes::{LaneWork, Lanes};
 use crate::search::{Failure, Linearisation, Multipliers, Piece, PieceId};
-use crate::trajectory::{LocalPeak, Path, Samples, duration_asked};
+use crate::trajectory::{Curve, Family, LocalPeak, duration_asked};
 
 /// How far below the largest, as a share of it, a part may lie to be linearised too.
 const NEAR: f64 = 0.75;
 
-impl Reorientation {
+impl<F: Family> Reorientation<F> {
     /// The time-free cost's parts: the vector part of the base's error, and the duration that each
     /// local peak of rate, acceleration and jerk asks for.
     pub(super) fn linearise(&self, coefficients: &[f64]) -> Linearisation {
-        let path = self.family().path(coefficients);
         let mut samples = self.workspace().samples;
         let slopes =
             self.width().run(Slopes { problem: self, coefficients, samples: &mut samples });
-        let places = samples.local_peaks(&path, &self.task().limits, NEAR);
-        let durations = places.into_iter().map(|place| self.duration_piece(&path, place));
+        let limits = &self.task().limits;
+        let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
+        let curves: Vec<_> = self.curves(coefficients).collect();
+        let durations =
+            places.into_iter().map(|place| self.duration_piece(&curves[place.joint], place));
         self.terms().time_free(self.base_error_pieces(&slopes), durations.collect())
+    }
+
+    /// The joints' paths.
+    fn curves(&self, coefficients: &[f64]) -> impl Iterator<Item = F::Curve<'_>> {
+        let family = self.family();
+        (0..family.joints()).map(move |joint| {
+            family.curve(joint, &coefficients[family.coefficients_of(joint)])
+        })
     }
 
     /// The components of the base's error.
@@ -52,16 +62,15 @@ impl Reorientation {
     }
 
     /// The duration that one limit asks for at one place of the path, and its derivatives.
-    fn duration_piece(&self, path: &Path<'_>, place: LocalPeak) -> Piece {
-        let LocalPeak { joint: index, order, tau } = place;
-        let joint = path.joint(index);
-        let derivative = joint.derivatives::<4>(tau)[order];
+    fn duration_piece(&self, curve: &F::Curve<'_>, place: LocalPeak) -> Piece {
+        let LocalPeak { joint, order, tau } = place;
+        let own = self.family().coefficients_of(joint);
+        let derivative = curve.derivatives::<4>(tau)[order];
         let value = self.duration_for(&place, derivative);
         let by_derivative = value / (order as f64 * derivative);
-        let terms = path.basis().terms();
         let mut gradient = DVector::zeros(self.family().dimension());
-        for (k, slope) in joint.coefficient_slopes(order, tau).enumerate() {
-            gradient[index * terms + k] = by_derivative * slope;
+        for (k, slope) in own.zip(curve.coefficient_slopes(order, tau)) {
+            gradient[k] = by_derivative * slope;
         }
         Piece { id: to_id(&place), value, gradient }
     }
@@ -73,32 +82,32 @@ fn to_id(peak: &LocalPeak) -> PieceId {
 }
 
 /// The base's rotation over a path with its derivatives, and the path's samples.
-struct Slopes<'a> {
-    problem: &'a Reorientation,
+struct Slopes<'a, F: Family> {
+    problem: &'a Reorientation<F>,
     coefficients: &'a [f64],
-    samples: &'a mut Samples,
+    samples: &'a mut F::Samples,
 }
 
-impl LaneWork for Slopes<'_> {
+impl<F: Family> LaneWork for Slopes<'_, F> {
     type Output = RotationSlopes;
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> RotationSlopes {
         let (robot, family) = (&self.problem.task().robot, self.problem.family());
         let Tables { rollout, sampler, .. } = self.problem.tables();
-        sampler.sample::<T>(family, self.coefficients, self.samples);
+        family.sample::<T>(sampler, self.coefficients, self.samples);
         rollout.slopes::<T>(robot, family, self.coefficients)
     }
 }
 
 /// The second derivative of the base's rotation over a path, times a vector.
-struct Bend<'a> {
-    problem: &'a Reorientation,
+struct Bend<'a, F: Family> {
+    problem: &'a Reorientation<F>,
     coefficients: &'a [f64],
     vector: Vector3<f64>,
 }
 
-impl LaneWork for Bend<'_> {
+impl<F: Family> LaneWork for Bend<'_, F> {
     type Output = RotationCurvature;
 
     #[inline(always)]
@@ -122,7 +131,7 @@ fn to_vector(multipliers: &[(PieceId, f64)]) -> Result<Vector3<f64>, Failure> {
 }
 
 /// Second derivatives.
-impl Reorientation {
+impl<F: Family> Reorientation<F> {
     pub(super) fn curvature(
         &self,
         coefficients: &[f64],
@@ -132,15 +141,13 @@ impl Reorientation {
             let found = multipliers.terms.len();
             return Err(format!("found multipliers of {found} terms, expected 2").into());
         };
-        let path = self.family().path(coefficients);
         let mut curvature = self.base_error_curvature(coefficients, &to_vector(error)?);
         for (id, lambda) in durations {
             let place = self.to_peak(id)?;
-            let terms = path.basis().terms();
-            let first = place.joint * terms;
-            let block = self.piece_curvature(&path, &place) * *lambda;
-            let mut own = curvature.view_mut((first, first), (terms, terms));
-            own += block;
+            let own = self.family().coefficients_of(place.joint);
+            let block = self.piece_curvature(&coefficients[own.clone()], &place) * *lambda;
+            let mut part = curvature.view_mut((own.start, own.start), (own.len(), own.len()));
+            part += block;
         }
         Ok(curvature)
     }
@@ -164,17 +171,16 @@ impl Reorientation {
     }
 
     /// Second derivatives of the duration that one limit asks for, by its joint's coefficients.
-    fn piece_curvature(&self, path: &Path<'_>, place: &LocalPeak) -> DMatrix<f64> {
-        let LocalPeak { joint: index, order, tau } = *place;
-        let joint = path.joint(index);
-        let derivatives = joint.derivatives::<6>(tau);
+    fn piece_curvature(&self, own: &[f64], place: &LocalPeak) -> DMatrix<f64> {
+        let LocalPeak { joint, order, tau } = *place;
+        let curve = self.family().curve(joint, own);
+        let derivatives = curve.derivatives::<6>(tau);
         let v = derivatives[order];
         let duration = self.duration_for(place, v);
-        let slopes = |order| {
-            DVector::from_iterator(path.basis().terms(), joint.coefficient_slopes(order, tau))
-        };
+        let slopes =
+            |order| DVector::from_iterator(own.len(), curve.coefficient_slopes(order, tau));
         let (slope, drift) = (slopes(order), slopes(order + 1));
-        let bend = joint.coefficient_curvature(order, tau);
+        let bend = curve.coefficient_curvature(order, tau);
         let mut second = DMatrix::from_fn(slope.len(), slope.len(), bend);
         if tau > 0.0 && tau < 1.0 {
             // The peak moves along the path.

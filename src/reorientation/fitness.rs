@@ -11,7 +11,7 @@ use super::terms::{Terms, penalty};
 use crate::lanes::Width;
 use crate::search::Evaluation;
 use crate::task::Task;
-use crate::trajectory::{Family, Peaks, excess, longest_asked};
+use crate::trajectory::{Family, Peaks, SinePolynomial, excess, longest_asked};
 
 /// How finely a motion is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -29,13 +29,13 @@ impl Accuracy {
 
 /// The reorientation task over one trajectory family.
 #[derive(Debug, Clone)]
-pub struct Reorientation {
+pub struct Reorientation<F: Family = SinePolynomial> {
     task: Arc<Task>,
-    family: Arc<Family>,
+    family: Arc<F>,
     accuracy: Accuracy,
-    tables: Arc<Tables>,
+    tables: Arc<Tables<F>>,
     /// Those of [`Accuracy::FINE`], made when first asked for, for this problem and all its clones.
-    fine: Arc<OnceLock<Arc<Tables>>>,
+    fine: Arc<OnceLock<Arc<Tables<F>>>>,
     width: Width,
 }
 
@@ -61,10 +61,22 @@ impl Reorientation {
     ///
     /// Panics without a term, a step or an interval, or when the task does not fit its robot.
     pub fn new(task: Arc<Task>, terms: usize, accuracy: Accuracy) -> Self {
+        let ranges: Vec<_> = task.robot.joints().map(|j| j.range).collect();
+        let family = SinePolynomial::new(&ranges, &task.start.joints, &task.goal.joints, terms);
+        Self::over(task, family, accuracy)
+    }
+}
+
+impl<F: Family> Reorientation<F> {
+    /// The task over a family between its start and goal.
+    ///
+    /// # Panics
+    ///
+    /// Panics without a step or an interval, or when limits or family are not for the task's joints.
+    pub fn over(task: Arc<Task>, family: F, accuracy: Accuracy) -> Self {
         assert!(accuracy.attitude_steps > 0 && accuracy.peak_intervals > 0, "no accuracy at all");
         assert_eq!(task.limits.0.len(), task.robot.joint_count(), "limits for every joint");
-        let ranges: Vec<_> = task.robot.joints().map(|j| j.range).collect();
-        let family = Family::new(&ranges, &task.start.joints, &task.goal.joints, terms);
+        assert_eq!(family.joints(), task.robot.joint_count(), "a path for every joint");
         let tables = Tables::new(&task, &family, accuracy);
         let fine = OnceLock::new();
         if accuracy == Accuracy::FINE {
@@ -78,7 +90,7 @@ impl Reorientation {
     /// clones.
     #[must_use]
     pub fn with_accuracy(&self, accuracy: Accuracy) -> Self {
-        let make = || Tables::new(&self.task, &self.family, accuracy);
+        let make = || Tables::new(&self.task, self.family(), accuracy);
         let tables =
             if accuracy == Accuracy::FINE { self.fine.get_or_init(make).clone() } else { make() };
         Self { accuracy, tables, ..self.clone() }
@@ -108,7 +120,7 @@ impl Reorientation {
     }
 
     /// The trajectory family.
-    pub fn family(&self) -> &Family {
+    pub fn family(&self) -> &F {
         &self.family
     }
 
@@ -117,12 +129,12 @@ impl Reorientation {
         Terms::new(self.task.base_weight)
     }
 
-    pub(super) fn tables(&self) -> &Tables {
+    pub(super) fn tables(&self) -> &Tables<F> {
         &self.tables
     }
 
     /// Room to evaluate motions in.
-    pub fn workspace(&self) -> Workspace {
+    pub fn workspace(&self) -> Workspace<F> {
         self.tables.workspace(&self.family)
     }
 
@@ -137,7 +149,7 @@ impl Reorientation {
         let mut workspace = self.workspace();
         let measure = Measure { problem: self, coefficients, workspace: &mut workspace };
         let attitude_error = self.width.run(measure);
-        let peaks = workspace.samples.peaks(&self.family.path(coefficients));
+        let peaks = self.family.peaks(&workspace.samples, coefficients);
         let (duration, excess) = match duration {
             Some(duration) => (duration, peaks.over(duration).excess(&self.task.limits)),
             None => (peaks.shortest_duration(&self.task.limits), [0.0; 3]),
@@ -161,7 +173,7 @@ impl Reorientation {
         &self,
         coefficients: &[f64],
         duration: Option<f64>,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<F>,
     ) -> Evaluation {
         self.check(coefficients);
         let (attitude_error, largest) =

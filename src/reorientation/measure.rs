@@ -10,46 +10,41 @@ use crate::attitude::{Midpoints, Rollout};
 use crate::lanes::{LaneWork, Lanes};
 use crate::momentum::{Arm, JointState};
 use crate::task::Task;
-use crate::trajectory::{ArchRoom, Family, Sampler, Samples, longest_asked};
+use crate::trajectory::{Family, SinePolynomial, longest_asked};
 
 /// All that does not depend on the motion, worked out once.
 #[derive(Debug)]
-pub(super) struct Tables {
+pub(super) struct Tables<F: Family> {
     arm: Arm,
-    pub(super) rollout: Rollout,
-    pub(super) sampler: Sampler,
-    pub(super) midpoints: Midpoints,
+    pub(super) rollout: Rollout<F>,
+    pub(super) sampler: F::Sampler,
+    pub(super) midpoints: Midpoints<F>,
 }
 
 /// Midpoint steps along the path for the curvature.
 const CURVATURE_STEPS: usize = 12;
 
-impl Tables {
-    pub(super) fn new(task: &Task, family: &Family, accuracy: Accuracy) -> Arc<Self> {
+impl<F: Family> Tables<F> {
+    pub(super) fn new(task: &Task, family: &F, accuracy: Accuracy) -> Arc<Self> {
         Arc::new(Self {
             arm: Arm::new(&task.robot),
             rollout: Rollout::new(family, accuracy.attitude_steps),
-            sampler: Sampler::new(family, accuracy.peak_intervals),
+            sampler: family.sampler(accuracy.peak_intervals),
             midpoints: Midpoints::new(family, CURVATURE_STEPS),
         })
     }
 
     /// Room to evaluate motions in.
-    pub(super) fn workspace(&self, family: &Family) -> Workspace {
-        Workspace {
-            samples: self.sampler.samples(family.joints()),
-            joints: Vec::new(),
-            arches: ArchRoom::default(),
-        }
+    pub(super) fn workspace(&self, family: &F) -> Workspace<F> {
+        Workspace { samples: family.samples(&self.sampler), joints: Vec::new() }
     }
 }
 
 /// Room for the evaluation of one motion of the same problem after the other.
 #[derive(Debug, Clone)]
-pub struct Workspace {
-    pub(super) samples: Samples,
+pub struct Workspace<F: Family = SinePolynomial> {
+    pub(super) samples: F::Samples,
     joints: Vec<JointState>,
-    arches: ArchRoom,
 }
 
 /// First to third power of a duration: what rate, acceleration and jerk over it are divided by.
@@ -59,21 +54,20 @@ pub(super) fn powers(duration: f64) -> [f64; 3] {
 
 /// All that the cost follows from: `‖δq_b‖`, and of each order the largest peak as a multiple of its limit,
 /// where it matters.
-pub(super) struct Fitness<'a> {
-    pub(super) problem: &'a Reorientation,
+pub(super) struct Fitness<'a, F: Family> {
+    pub(super) problem: &'a Reorientation<F>,
     pub(super) coefficients: &'a [f64],
     pub(super) duration: Option<f64>,
-    pub(super) workspace: &'a mut Workspace,
+    pub(super) workspace: &'a mut Workspace<F>,
 }
 
-impl LaneWork for Fitness<'_> {
+impl<F: Family> LaneWork for Fitness<'_, F> {
     type Output = (f64, [f64; 3]);
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> (f64, [f64; 3]) {
         let Self { problem, coefficients, duration, workspace } = self;
         let error = Measure { problem, coefficients, workspace }.run::<T>();
-        let Workspace { samples, arches, .. } = workspace;
         let matters = |known: [f64; 3]| match duration {
             // Within a limit it does not matter how far.
             Some(duration) => {
@@ -83,38 +77,39 @@ impl LaneWork for Fitness<'_> {
             None => powers(longest_asked(known)),
         };
         let (limits, family) = (&problem.task().limits, problem.family());
-        let largest = samples.largest_ratio::<T>(limits, matters, family, coefficients, arches);
+        let samples = &mut workspace.samples;
+        let largest = family.largest_ratio::<T>(samples, limits, matters, coefficients);
         (error, largest)
     }
 }
 
 /// Samples a path, and finds `‖δq_b‖` of eq. 20 at its end.
-pub(super) struct Measure<'a> {
-    pub(super) problem: &'a Reorientation,
+pub(super) struct Measure<'a, F: Family> {
+    pub(super) problem: &'a Reorientation<F>,
     pub(super) coefficients: &'a [f64],
-    pub(super) workspace: &'a mut Workspace,
+    pub(super) workspace: &'a mut Workspace<F>,
 }
 
-impl LaneWork for Measure<'_> {
+impl<F: Family> LaneWork for Measure<'_, F> {
     type Output = f64;
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> f64 {
         let Self { problem, coefficients, workspace: Workspace { samples, joints, .. } } = self;
-        problem.tables().sampler.sample::<T>(problem.family(), coefficients, samples);
+        problem.family().sample::<T>(&problem.tables().sampler, coefficients, samples);
         let net = Turn { problem, coefficients, joints }.run::<T>();
         problem.error_after(net).imag().norm()
     }
 }
 
 /// The base's rotation over a path.
-pub(super) struct Turn<'a> {
-    pub(super) problem: &'a Reorientation,
+pub(super) struct Turn<'a, F: Family> {
+    pub(super) problem: &'a Reorientation<F>,
     pub(super) coefficients: &'a [f64],
     pub(super) joints: &'a mut Vec<JointState>,
 }
 
-impl LaneWork for Turn<'_> {
+impl<F: Family> LaneWork for Turn<'_, F> {
     type Output = UnitQuaternion<f64>;
 
     #[inline(always)]

@@ -10,7 +10,7 @@ use toml::Spanned;
 use super::fitness::{Accuracy, Reorientation};
 use crate::input::{Document, InputError, Positive, count, positive_interval};
 use crate::task::{Task, TaskTable};
-use crate::trajectory::{Family, Limits, Peaks};
+use crate::trajectory::{Limits, Peaks, SinePolynomial};
 
 /// The paper's task and the default settings.
 pub(super) const DEFAULTS: &str = include_str!("defaults.toml");
@@ -124,7 +124,7 @@ impl TrajectoryTable {
 impl BoxTable {
     fn build(
         &self,
-        family: &Family,
+        family: &SinePolynomial,
         limits: &Limits,
         document: &Document,
     ) -> Result<Boxes, InputError> {
@@ -175,7 +175,7 @@ pub(super) fn check_terms(
 
 /// From a quarter to one and a half times the shortest duration of a typical shape: every joint's
 /// first bump at half its half-width. Follows the limits, and is never zero, though start and goal be the same.
-fn default_duration(family: &Family, limits: &Limits, width: f64) -> [f64; 2] {
+fn default_duration(family: &SinePolynomial, limits: &Limits, width: f64) -> [f64; 2] {
     let mut coefficients = vec![0.0; family.dimension()];
     coefficients.iter_mut().step_by(family.terms()).for_each(|c| *c = width / 2.0);
     let typical = Peaks::of(family, &coefficients, 256).shortest_duration(limits);
@@ -184,7 +184,11 @@ fn default_duration(family: &Family, limits: &Limits, width: f64) -> [f64; 2] {
 
 /// The smallest box of `α` that holds the whole box of coefficients at the geometric mean of the
 /// shortest and the longest duration.
-fn default_alpha(family: &Family, coefficient: &[f64], [shortest, longest]: [f64; 2]) -> Vec<f64> {
+fn default_alpha(
+    family: &SinePolynomial,
+    coefficient: &[f64],
+    [shortest, longest]: [f64; 2],
+) -> Vec<f64> {
     let duration = (shortest * longest).sqrt();
     let terms = family.terms();
     let mut alpha = vec![0.0; terms];

@@ -1,118 +1,142 @@
-//! All paths of the sine-polynomial family between two configurations.
+//! What the planner's kernels ask of a family of joint paths.
 
-use super::basis::Basis;
-use super::path::{JointPath, Path, Span};
+use std::fmt::Debug;
+use std::ops::Range;
 
-/// All paths of the family between two configurations.
+use super::peaks::{Limits, LocalPeak, Peaks};
+use crate::lanes::Lanes;
+use crate::scalar::{Pair, Scalar};
+
+/// All paths of one kind between two configurations, in normalised time `τ = t / t_f`.
 ///
-/// `s = s_0 + (s_f − s_0) σ(τ) + 64 τ³(1−τ)³ Σ_k c_k P_k(2τ−1)`; the coefficients `c` select one.
-/// They are ordered joint by joint, `terms` for each.
-#[derive(Debug, Clone)]
-pub struct Family {
-    spans: Vec<Span>,
-    basis: Basis,
-}
+/// A joint's position is a function of a *phase*, `θ = g(s(τ))`, and the phase is linear in the joint's own
+/// coefficients, `s = s_0(τ) + Σ_k c_k b_k(τ)`. For a spline `g` is the identity. Coefficients are ordered
+/// joint by joint.
+///
+/// What takes a `T` works in lanes: implementations have to be `#[inline(always)]`, like all that they call.
+pub trait Family: Debug + Clone + Send + Sync + 'static {
+    /// What coefficients do not change at fixed times, one time per lane.
+    type Nodes: Debug + Clone + Send + Sync;
 
-impl Family {
-    /// From the joints' ranges and both configurations \[rad\], each start and goal in its range.
-    ///
-    /// # Panics
-    ///
-    /// Panics when the three lists differ in length, or without a term.
-    pub fn new(ranges: &[[f64; 2]], start: &[f64], goal: &[f64], terms: usize) -> Self {
-        assert!(ranges.len() == start.len() && start.len() == goal.len(), "one of each a joint");
-        assert!(terms > 0, "at least one term");
-        let spans = ranges
-            .iter()
-            .zip(start.iter().zip(goal))
-            .map(|(range, (&start, &goal))| Span::new(*range, start, goal))
-            .collect();
-        Self { spans, basis: Basis::new(terms) }
-    }
+    /// The same where peaks are sought.
+    type Sampler: Debug + Clone + Send + Sync;
+
+    /// Room for the samples of one path.
+    type Samples: Debug + Clone + Send;
+
+    /// One joint's path.
+    type Curve<'a>: Curve;
 
     /// Number of joints.
-    pub fn joints(&self) -> usize {
-        self.spans.len()
-    }
-
-    /// Free coefficients a joint.
-    pub fn terms(&self) -> usize {
-        self.basis.terms()
-    }
-
-    /// The bumps that coefficients multiply.
-    pub fn basis(&self) -> &Basis {
-        &self.basis
-    }
-
-    pub(super) fn spans(&self) -> &[Span] {
-        &self.spans
-    }
+    fn joints(&self) -> usize;
 
     /// Free coefficients in all.
-    pub fn dimension(&self) -> usize {
-        self.joints() * self.terms()
-    }
+    fn dimension(&self) -> usize;
 
-    /// The path with these coefficients.
-    ///
-    /// # Panics
-    ///
-    /// Panics when there are more or fewer coefficients than the family's dimension.
-    pub fn path(&self, coefficients: &[f64]) -> Path<'_> {
-        assert_eq!(coefficients.len(), self.dimension(), "terms × joints coefficients");
-        let mut free = vec![0.0; self.dimension()];
-        let joints = coefficients.chunks_exact(self.terms());
-        for (powers, joint) in free.chunks_exact_mut(self.terms()).zip(joints) {
-            self.basis.gather(joint, powers);
-        }
-        Path::new(&self.spans, &self.basis, free)
-    }
+    /// The places of a joint's own coefficients among all.
+    fn coefficients_of(&self, joint: usize) -> Range<usize>;
 
-    /// One joint's part of that path; `powers` is room for as many numbers as there are terms.
-    pub fn joint_path<'a>(
-        &'a self,
+    /// Tables for these times, filled up with the path's start to a number that pairs of lanes divide.
+    fn nodes(&self, times: impl IntoIterator<Item = f64>) -> Self::Nodes;
+
+    /// A joint's phase and its derivative by `τ` from time `first` on, from its own coefficients.
+    fn phase<T: Lanes>(
+        &self,
+        nodes: &Self::Nodes,
+        first: usize,
         joint: usize,
-        coefficients: &[f64],
-        powers: &'a mut [f64],
-    ) -> JointPath<'a> {
-        self.basis.gather(self.of_joint(joint, coefficients), powers);
-        JointPath::new(&self.spans[joint], &self.basis, powers)
-    }
+        own: &[f64],
+    ) -> [T; 2];
 
-    /// One joint's coefficients among those of all.
+    /// The same at two places at once.
     #[inline(always)]
-    pub fn of_joint<'a>(&self, joint: usize, coefficients: &'a [f64]) -> &'a [f64] {
-        &coefficients[joint * self.terms()..(joint + 1) * self.terms()]
+    fn phase_pair<T: Lanes>(
+        &self,
+        nodes: &Self::Nodes,
+        [near, far]: [usize; 2],
+        joint: usize,
+        own: &[f64],
+    ) -> [Pair<T>; 2] {
+        let near = self.phase::<T>(nodes, near, joint, own);
+        let far = self.phase::<T>(nodes, far, joint, own);
+        [Pair(near[0], far[0]), Pair(near[1], far[1])]
     }
 
-    /// The paper's `α_6 … , α_7 …, …` \[s⁻⁶, s⁻⁷, …\], one block a power, one value a joint.
-    pub fn to_alpha(&self, coefficients: &[f64], duration: f64) -> Vec<f64> {
-        let mut alpha = vec![0.0; self.dimension()];
-        for (i, joint) in coefficients.chunks_exact(self.terms()).enumerate() {
-            for (k, power) in self.basis.to_powers(joint).into_iter().enumerate() {
-                alpha[k * self.joints() + i] = power / duration.powi(6 + k as i32);
-            }
-        }
-        alpha
+    /// A joint's position and rate at a phase with its derivative, and how they follow it.
+    fn at_phase<T: Scalar>(&self, joint: usize, phase: [T; 2]) -> AtPhase<T>;
+
+    /// Those of a joint's coefficients that change anything at the times from `first` on.
+    #[inline(always)]
+    fn support<T: Lanes>(&self, _nodes: &Self::Nodes, joint: usize, _first: usize) -> Range<usize> {
+        0..self.coefficients_of(joint).len()
     }
 
-    /// The coefficients of a path given by the paper's `α` and duration \[s\].
-    pub fn from_alpha(&self, alpha: &[f64], duration: f64) -> Vec<f64> {
-        let mut coefficients = vec![0.0; self.dimension()];
-        self.write_from_alpha(alpha, duration, &mut coefficients);
-        coefficients
-    }
+    /// Derivative of the phase, and of its derivative by `τ`, by a joint's `k`-th own coefficient.
+    fn bump<T: Lanes>(&self, nodes: &Self::Nodes, joint: usize, k: usize, first: usize) -> [T; 2];
 
-    /// [`from_alpha`](Self::from_alpha) into a place of one's own.
-    pub fn write_from_alpha(&self, alpha: &[f64], duration: f64, coefficients: &mut [f64]) {
-        debug_assert_eq!(alpha.len(), self.dimension());
-        coefficients.fill(0.0);
-        for (k, block) in alpha.chunks_exact(self.joints()).enumerate() {
-            let power = duration.powi(6 + k as i32);
-            for (joint, alpha) in coefficients.chunks_exact_mut(self.terms()).zip(block) {
-                self.basis.add_power(k, alpha * power, joint);
-            }
-        }
-    }
+    /// Tables to find peaks with, for so many intervals at least.
+    fn sampler(&self, intervals: usize) -> Self::Sampler;
+
+    /// Room for the samples of a path.
+    fn samples(&self, sampler: &Self::Sampler) -> Self::Samples;
+
+    /// Samples the path with these coefficients.
+    fn sample<T: Lanes>(
+        &self,
+        sampler: &Self::Sampler,
+        coefficients: &[f64],
+        samples: &mut Self::Samples,
+    );
+
+    /// Of each order the sampled path's largest peak as a multiple of its limit. One that is below what
+    /// `matters` makes of those known so far need not be found, and a smaller one may stand for it.
+    fn largest_ratio<T: Lanes>(
+        &self,
+        samples: &mut Self::Samples,
+        limits: &Limits,
+        matters: impl Fn([f64; 3]) -> [f64; 3],
+        coefficients: &[f64],
+    ) -> [f64; 3];
+
+    /// All local maxima of the sampled path that ask for a duration not below `share` of the longest asked
+    /// for.
+    fn local_peaks(
+        &self,
+        samples: &Self::Samples,
+        coefficients: &[f64],
+        limits: &Limits,
+        share: f64,
+    ) -> Vec<LocalPeak>;
+
+    /// The largest peaks of the sampled path.
+    fn peaks(&self, samples: &Self::Samples, coefficients: &[f64]) -> Peaks;
+
+    /// One joint's path, from its own coefficients.
+    fn curve(&self, joint: usize, own: &[f64]) -> Self::Curve<'_>;
+}
+
+/// One joint's path, at any time.
+pub trait Curve {
+    /// Position \[rad or m\] and first derivatives by `τ`, at most six in all.
+    fn derivatives<const N: usize>(&self, tau: f64) -> [f64; N];
+
+    /// Derivative of the `order`-th derivative of the position by each of the joint's coefficients.
+    fn coefficient_slopes(&self, order: usize, tau: f64) -> impl Iterator<Item = f64>;
+
+    /// Second derivative of the `order`-th derivative of the position by any two of the joint's
+    /// coefficients.
+    fn coefficient_curvature(&self, order: usize, tau: f64) -> impl Fn(usize, usize) -> f64;
+}
+
+/// A joint's position and rate at a phase.
+#[derive(Debug, Clone, Copy)]
+pub struct AtPhase<T> {
+    /// `θ` \[rad\].
+    pub angle: T,
+    /// `θ'`, by `τ` \[rad\].
+    pub rate: T,
+    /// `∂θ/∂s`, which is `∂θ'/∂s'` too.
+    pub angle_slope: T,
+    /// `∂θ'/∂s`.
+    pub rate_slope: T,
 }

@@ -1,7 +1,7 @@
 //! A family's phases at fixed times, in lanes.
 
-use super::family::Family;
-use super::path::AtPhase;
+use super::family::AtPhase;
+use super::sine::SinePolynomial;
 use super::window::step;
 use crate::lanes::{Block, Lanes, MOST};
 use crate::scalar::{Pair, Scalar};
@@ -9,7 +9,7 @@ use crate::scalar::{Pair, Scalar};
 /// Step and bumps of a family at fixed times, with their first `N − 1` derivatives by `τ`: all of a phase
 /// that coefficients do not change, tabulated once.
 #[derive(Debug, Clone)]
-pub(crate) struct Grid<const N: usize> {
+pub struct Grid<const N: usize> {
     /// Blocks for each [`MOST`] times: `N` for the step, then `N` for every bump.
     rows: usize,
     table: Vec<Block>,
@@ -17,7 +17,7 @@ pub(crate) struct Grid<const N: usize> {
 
 impl<const N: usize> Grid<N> {
     /// At these times; filled up with the path's start to a number that pairs of lanes divide.
-    pub(crate) fn new(family: &Family, times: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn new(family: &SinePolynomial, times: impl IntoIterator<Item = f64>) -> Self {
         let mut times: Vec<f64> = times.into_iter().collect();
         times.resize(times.len().next_multiple_of(2 * MOST), 0.0);
         let rows = N * (family.terms() + 1);
@@ -59,7 +59,7 @@ fn load<T: Lanes, const N: usize>(blocks: &[Block], first: usize) -> [T; N] {
     numbers
 }
 
-impl Family {
+impl SinePolynomial {
     /// One joint's phase and its derivatives from time `first` on, for the joint's coefficients.
     #[inline(always)]
     pub(crate) fn phase<T: Lanes, const N: usize>(

@@ -1,6 +1,7 @@
 //! One path: every joint's angle and derivatives at any normalised time.
 
 use super::basis::Basis;
+use super::family::AtPhase;
 use super::window::{BINOMIAL, ORDERS, leibniz, step, windowed};
 use crate::scalar::Scalar;
 
@@ -85,19 +86,6 @@ impl<'a> Path<'a> {
     }
 }
 
-/// A joint's angle and rate at a phase.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct AtPhase<T> {
-    /// `θ` \[rad\].
-    pub angle: T,
-    /// `θ'`, by `τ` \[rad\].
-    pub rate: T,
-    /// `∂θ/∂s`, which is `∂θ'/∂s'` too.
-    pub angle_slope: T,
-    /// `∂θ'/∂s`.
-    pub rate_slope: T,
-}
-
 impl Span {
     /// Angle \[rad\] and its derivative by `τ` at a phase with its derivative (eqs. 11 and 12), and
     /// how they follow the phase.
@@ -157,7 +145,11 @@ impl<'a> JointPath<'a> {
     }
 
     /// Derivative of the `order`-th derivative of the angle by each of the joint's coefficients.
-    pub fn coefficient_slopes(&self, order: usize, tau: f64) -> impl Iterator<Item = f64> {
+    pub fn coefficient_slopes(
+        &self,
+        order: usize,
+        tau: f64,
+    ) -> impl Iterator<Item = f64> + use<'a> {
         let (_, cos) = self.sine::<ORDERS>(tau);
         let amplitude = self.span.amplitude;
         let bumps = self.basis.bumps::<ORDERS>(tau);
@@ -166,7 +158,11 @@ impl<'a> JointPath<'a> {
 
     /// Second derivative of the `order`-th derivative of the angle by any two of the joint's
     /// coefficients.
-    pub fn coefficient_curvature(&self, order: usize, tau: f64) -> impl Fn(usize, usize) -> f64 {
+    pub fn coefficient_curvature(
+        &self,
+        order: usize,
+        tau: f64,
+    ) -> impl Fn(usize, usize) -> f64 + use<'a> {
         let (sin, _) = self.sine::<ORDERS>(tau);
         let bumps: Vec<_> = self.basis.bumps::<ORDERS>(tau).collect();
         let amplitude = self.span.amplitude;

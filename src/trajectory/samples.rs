@@ -1,9 +1,9 @@
 //! A path sampled in lanes, and the peaks between samples.
 
-use super::family::Family;
 use super::grid::Grid;
 use super::path::{JointPath, Path};
 use super::peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, longest_asked};
+use super::sine::SinePolynomial;
 use crate::lanes::{Lanes, MOST};
 use crate::scalar::{Pair, Scalar};
 
@@ -27,6 +27,7 @@ pub struct Samples {
     largest: Vec<[f64; 3]>,
     /// And what no peak between samples exceeds.
     bounds: Vec<[f64; 3]>,
+    room: ArchRoom,
 }
 
 /// By which share of a peak's height its place may miss it: for its height, and for its place, which
@@ -36,7 +37,7 @@ const PLACE: f64 = 1e-21;
 
 impl Sampler {
     /// At the ends of so many intervals.
-    pub fn new(family: &Family, intervals: usize) -> Self {
+    pub fn new(family: &SinePolynomial, intervals: usize) -> Self {
         let times = (0..=intervals).map(|i| i as f64 / intervals as f64);
         Self { grid: Grid::new(family, times), intervals }
     }
@@ -50,6 +51,7 @@ impl Sampler {
             rows: vec![0.0; joints * 4 * times + MOST],
             largest: vec![[0.0; 3]; joints],
             bounds: vec![[0.0; 3]; joints],
+            room: ArchRoom::default(),
         }
     }
 
@@ -59,7 +61,12 @@ impl Sampler {
     ///
     /// Panics when the room was not made for this family.
     #[inline(always)]
-    pub fn sample<T: Lanes>(&self, family: &Family, coefficients: &[f64], samples: &mut Samples) {
+    pub fn sample<T: Lanes>(
+        &self,
+        family: &SinePolynomial,
+        coefficients: &[f64],
+        samples: &mut Samples,
+    ) {
         let times = self.grid.times();
         assert_eq!(
             samples.rows.len(),
@@ -95,7 +102,7 @@ impl Sampler {
 
 impl Peaks {
     /// The peaks of the path with these coefficients in normalised time \[rad\].
-    pub fn of(family: &Family, coefficients: &[f64], intervals: usize) -> Self {
+    pub fn of(family: &SinePolynomial, coefficients: &[f64], intervals: usize) -> Self {
         let sampler = Sampler::new(family, intervals);
         let mut samples = sampler.samples(family.joints());
         sampler.sample::<f64>(family, coefficients, &mut samples);
@@ -122,7 +129,7 @@ struct Arch {
 
 /// Room for what [`Samples::largest_ratio`] looks at.
 #[derive(Debug, Clone, Default)]
-pub struct ArchRoom {
+struct ArchRoom {
     arches: Vec<Arch>,
     /// One joint's coefficients in powers.
     powers: Vec<f64>,
@@ -162,16 +169,16 @@ impl Samples {
     /// those known so far need not be found, and a smaller one may stand for it.
     #[inline(always)]
     pub fn largest_ratio<T: Lanes>(
-        &self,
+        &mut self,
         limits: &Limits,
         matters: impl Fn([f64; 3]) -> [f64; 3],
-        family: &Family,
+        family: &SinePolynomial,
         coefficients: &[f64],
-        room: &mut ArchRoom,
     ) -> [f64; 3] {
         let mut known = limits.largest_ratio(self.largest.iter().copied());
         let mut floor = matters(known);
-        let ArchRoom { arches, powers } = room;
+        let mut room = std::mem::take(&mut self.room);
+        let ArchRoom { arches, powers } = &mut room;
         arches.clear();
         for (joint, (bounds, limit)) in self.bounds.iter().zip(&limits.0).enumerate() {
             for k in 0..3 {
@@ -195,6 +202,7 @@ impl Samples {
                 floor = matters(known);
             }
         }
+        self.room = room;
         known
     }
 

@@ -1,0 +1,118 @@
+//! All paths of the sine-polynomial family between two configurations.
+
+use super::basis::Basis;
+use super::path::{JointPath, Path, Span};
+
+/// All paths of the family between two configurations.
+///
+/// `s = s_0 + (s_f − s_0) σ(τ) + 64 τ³(1−τ)³ Σ_k c_k P_k(2τ−1)`; the coefficients `c` select one.
+/// They are ordered joint by joint, `terms` for each.
+#[derive(Debug, Clone)]
+pub struct SinePolynomial {
+    spans: Vec<Span>,
+    basis: Basis,
+}
+
+impl SinePolynomial {
+    /// From the joints' ranges and both configurations \[rad\], each start and goal in its range.
+    ///
+    /// # Panics
+    ///
+    /// Panics when the three lists differ in length, or without a term.
+    pub fn new(ranges: &[[f64; 2]], start: &[f64], goal: &[f64], terms: usize) -> Self {
+        assert!(ranges.len() == start.len() && start.len() == goal.len(), "one of each a joint");
+        assert!(terms > 0, "at least one term");
+        let spans = ranges
+            .iter()
+            .zip(start.iter().zip(goal))
+            .map(|(range, (&start, &goal))| Span::new(*range, start, goal))
+            .collect();
+        Self { spans, basis: Basis::new(terms) }
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.spans.len()
+    }
+
+    /// Free coefficients a joint.
+    pub fn terms(&self) -> usize {
+        self.basis.terms()
+    }
+
+    /// The bumps that coefficients multiply.
+    pub fn basis(&self) -> &Basis {
+        &self.basis
+    }
+
+    pub(super) fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+
+    /// Free coefficients in all.
+    pub fn dimension(&self) -> usize {
+        self.joints() * self.terms()
+    }
+
+    /// The path with these coefficients.
+    ///
+    /// # Panics
+    ///
+    /// Panics when there are more or fewer coefficients than the family's dimension.
+    pub fn path(&self, coefficients: &[f64]) -> Path<'_> {
+        assert_eq!(coefficients.len(), self.dimension(), "terms × joints coefficients");
+        let mut free = vec![0.0; self.dimension()];
+        let joints = coefficients.chunks_exact(self.terms());
+        for (powers, joint) in free.chunks_exact_mut(self.terms()).zip(joints) {
+            self.basis.gather(joint, powers);
+        }
+        Path::new(&self.spans, &self.basis, free)
+    }
+
+    /// One joint's part of that path; `powers` is room for as many numbers as there are terms.
+    pub fn joint_path<'a>(
+        &'a self,
+        joint: usize,
+        coefficients: &[f64],
+        powers: &'a mut [f64],
+    ) -> JointPath<'a> {
+        self.basis.gather(self.of_joint(joint, coefficients), powers);
+        JointPath::new(&self.spans[joint], &self.basis, powers)
+    }
+
+    /// One joint's coefficients among those of all.
+    #[inline(always)]
+    pub fn of_joint<'a>(&self, joint: usize, coefficients: &'a [f64]) -> &'a [f64] {
+        &coefficients[joint * self.terms()..(joint + 1) * self.terms()]
+    }
+
+    /// The paper's `α_6 … , α_7 …, …` \[s⁻⁶, s⁻⁷, …\], one block a power, one value a joint.
+    pub fn to_alpha(&self, coefficients: &[f64], duration: f64) -> Vec<f64> {
+        let mut alpha = vec![0.0; self.dimension()];
+        for (i, joint) in coefficients.chunks_exact(self.terms()).enumerate() {
+            for (k, power) in self.basis.to_powers(joint).into_iter().enumerate() {
+                alpha[k * self.joints() + i] = power / duration.powi(6 + k as i32);
+            }
+        }
+        alpha
+    }
+
+    /// The coefficients of a path given by the paper's `α` and duration \[s\].
+    pub fn from_alpha(&self, alpha: &[f64], duration: f64) -> Vec<f64> {
+        let mut coefficients = vec![0.0; self.dimension()];
+        self.write_from_alpha(alpha, duration, &mut coefficients);
+        coefficients
+    }
+
+    /// [`from_alpha`](Self::from_alpha) into a place of one's own.
+    pub fn write_from_alpha(&self, alpha: &[f64], duration: f64, coefficients: &mut [f64]) {
+        debug_assert_eq!(alpha.len(), self.dimension());
+        coefficients.fill(0.0);
+        for (k, block) in alpha.chunks_exact(self.joints()).enumerate() {
+            let power = duration.powi(6 + k as i32);
+            for (joint, alpha) in coefficients.chunks_exact_mut(self.terms()).zip(block) {
+                self.basis.add_power(k, alpha * power, joint);
+            }
+        }
+    }
+}
