@@ -147,13 +147,14 @@ impl<F: Family> Midpoints<F> {
             phases[j][0] += T::of(STEP);
             let beside = evaluator.evaluate(&phases);
             phases[j] = here;
+            let columns = &bumps[of_joint[j].clone()];
             for i in 0..joints {
                 let per_step = T::of(1.0 / STEP);
                 let phase = p.dot(beside.by_phase[i] - node.by_phase[i]) * per_step;
                 let mixed = p.dot(beside.by_phase_rate[i] - node.by_phase_rate[i]) * per_step;
                 for &(k, [value, slope]) in &bumps[of_joint[i].clone()] {
                     let row = value * phase + (slope + slope) * mixed;
-                    for &(l, [other, _]) in &bumps[of_joint[j].clone()] {
+                    for &(l, [other, _]) in columns {
                         let entry = &mut sum[(k, l)];
                         // One place after the other, whatever the number of lanes.
                         for place in &(row * other).numbers()[..T::COUNT] {

@@ -21,8 +21,17 @@ impl<F: Family> Reorientation<F> {
             self.width().run(Slopes { problem: self, coefficients, samples: &mut samples });
         let limits = &self.task().limits;
         let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
-        let durations = places.into_iter().map(|place| self.duration_piece(coefficients, place));
+        let curves: Vec<_> = self.curves(coefficients).collect();
+        let durations =
+            places.into_iter().map(|place| self.duration_piece(&curves[place.joint], place));
         self.terms().time_free(self.base_error_pieces(&slopes), durations.collect())
+    }
+
+    /// The joints' paths.
+    fn curves(&self, coefficients: &[f64]) -> impl Iterator<Item = F::Curve<'_>> {
+        let family = self.family();
+        (0..family.joints())
+            .map(move |joint| family.curve(joint, &coefficients[family.coefficients_of(joint)]))
     }
 
     /// The components of the base's error.
@@ -52,10 +61,9 @@ impl<F: Family> Reorientation<F> {
     }
 
     /// The duration that one limit asks for at one place of the path, and its derivatives.
-    fn duration_piece(&self, coefficients: &[f64], place: LocalPeak) -> Piece {
+    fn duration_piece(&self, curve: &F::Curve<'_>, place: LocalPeak) -> Piece {
         let LocalPeak { joint, order, tau } = place;
         let own = self.family().coefficients_of(joint);
-        let curve = self.family().curve(joint, &coefficients[own.clone()]);
         let derivative = curve.derivatives::<4>(tau)[order];
         let value = self.duration_for(&place, derivative);
         let by_derivative = value / (order as f64 * derivative);
