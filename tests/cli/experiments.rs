@@ -117,7 +117,7 @@ fn results_say_how_to_get_them_again() {
     let recipe = single_rows(&folder.path().join("out/runs"))[0].column("recipe").unwrap().clone();
     let recipe: serde_json::Value =
         serde_json::from_str(recipe.str().unwrap().get(0).unwrap()).unwrap();
-    assert_eq!(recipe["subject"]["identity"]["task"]["robot"]["base"]["mass"], 700.0);
+    assert_eq!(recipe["subject"]["identity"]["task"]["robot"]["base"]["body"]["mass"], 700.0);
     std::fs::remove_file(folder.path().join("arm.toml")).unwrap();
     run(&folder, &["out/experiment.toml", "--out", "again"]);
     let traces = |out: &str| files(&folder.path().join(out).join("traces"));
