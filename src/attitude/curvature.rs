@@ -132,30 +132,33 @@ impl<F: Family> Midpoints<F> {
         sum: &mut DMatrix<f64>,
     ) {
         let joints = family.joints();
-        // Joint by joint, each with the place of its coefficient among all.
-        let mut bumps: Vec<(usize, [T; 2])> = Vec::with_capacity(family.dimension());
-        let mut of_joint = Vec::with_capacity(joints);
+        let mut bumps: Vec<[T; 2]> = Vec::with_capacity(family.dimension());
+        // Of each joint the first of its bumps here, how many these are, and the first's coefficient.
+        let mut parts = Vec::with_capacity(joints);
         for joint in 0..joints {
-            let (own, start) = (family.coefficients_of(joint).start, bumps.len());
-            for k in family.support::<T>(&self.nodes, joint, first) {
-                bumps.push((own + k, family.bump(&self.nodes, joint, k, first)));
+            let support = family.support::<T>(&self.nodes, joint, first);
+            let place = family.coefficients_of(joint).start + support.start;
+            parts.push((bumps.len(), support.len(), place));
+            for k in support {
+                bumps.push(family.bump(&self.nodes, joint, k, first));
             }
-            of_joint.push(start..bumps.len());
         }
         for j in 0..joints {
             let here = phases[j];
             phases[j][0] += T::of(STEP);
             let beside = evaluator.evaluate(&phases);
             phases[j] = here;
-            let columns = &bumps[of_joint[j].clone()];
+            let (start, count, column) = parts[j];
+            let columns = &bumps[start..start + count];
             for i in 0..joints {
                 let per_step = T::of(1.0 / STEP);
                 let phase = p.dot(beside.by_phase[i] - node.by_phase[i]) * per_step;
                 let mixed = p.dot(beside.by_phase_rate[i] - node.by_phase_rate[i]) * per_step;
-                for &(k, [value, slope]) in &bumps[of_joint[i].clone()] {
+                let (start, count, row_place) = parts[i];
+                for (k, &[value, slope]) in bumps[start..start + count].iter().enumerate() {
                     let row = value * phase + (slope + slope) * mixed;
-                    for &(l, [other, _]) in columns {
-                        let entry = &mut sum[(k, l)];
+                    for (l, &[other, _]) in columns.iter().enumerate() {
+                        let entry = &mut sum[(row_place + k, column + l)];
                         // One place after the other, whatever the number of lanes.
                         for place in &(row * other).numbers()[..T::COUNT] {
                             *entry += place;
