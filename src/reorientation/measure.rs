@@ -59,6 +59,10 @@ pub(super) struct Given<'a, F: Family> {
     pub(super) tables: &'a Tables<F>,
 }
 
+#[expect(
+    clippy::expl_impl_clone_on_copy,
+    reason = "derived, it would ask the family to be `Clone`"
+)]
 impl<F: Family> Clone for Given<'_, F> {
     fn clone(&self) -> Self {
         *self
