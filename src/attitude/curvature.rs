@@ -150,11 +150,10 @@ impl<F: Family> Midpoints<F> {
             phases[j] = here;
             let (start, count, column) = parts[j];
             let columns = &bumps[start..start + count];
-            for i in 0..joints {
+            for (i, &(start, count, row_place)) in parts.iter().enumerate() {
                 let per_step = T::of(1.0 / STEP);
                 let phase = p.dot(beside.by_phase[i] - node.by_phase[i]) * per_step;
                 let mixed = p.dot(beside.by_phase_rate[i] - node.by_phase_rate[i]) * per_step;
-                let (start, count, row_place) = parts[i];
                 for (k, &[value, slope]) in bumps[start..start + count].iter().enumerate() {
                     let row = value * phase + (slope + slope) * mixed;
                     for (l, &[other, _]) in columns.iter().enumerate() {

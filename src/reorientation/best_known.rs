@@ -9,7 +9,8 @@ use std::sync::LazyLock;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use super::fitness::{Accuracy, Assessment, Reorientation};
+use super::accuracy::Accuracy;
+use super::fitness::{Assessment, Reorientation};
 use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::task::{Task, TaskTable};

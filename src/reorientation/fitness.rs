@@ -4,28 +4,14 @@ use std::array::from_fn;
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::UnitQuaternion;
-use serde::Serialize;
 
-use super::measure::{Fitness, Measure, Tables, Turn, Workspace, powers};
+use super::accuracy::Accuracy;
+use super::measure::{Fitness, Given, Measure, Tables, Turn, Workspace, powers};
 use super::terms::{Terms, penalty};
 use crate::lanes::Width;
 use crate::search::Evaluation;
 use crate::task::Task;
 use crate::trajectory::{Family, Peaks, SinePolynomial, excess, longest_asked};
-
-/// How finely a motion is evaluated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Accuracy {
-    /// Magnus steps along the path, rounded up to threes; each costs two evaluations of the base's rate.
-    pub attitude_steps: usize,
-    /// Intervals in which peaks of rate, acceleration and jerk are bracketed.
-    pub peak_intervals: usize,
-}
-
-impl Accuracy {
-    /// For what is recorded and shown: on the motions of interest exact to rounding.
-    pub const FINE: Self = Self { attitude_steps: 402, peak_intervals: 1024 };
-}
 
 /// The reorientation task over one trajectory family.
 #[derive(Debug, Clone)]
@@ -129,6 +115,10 @@ impl<F: Family> Reorientation<F> {
         Terms::new(self.task.base_weight)
     }
 
+    fn given(&self) -> Given<'_, F> {
+        Given { task: &self.task, family: &self.family, tables: &self.tables }
+    }
+
     pub(super) fn tables(&self) -> &Tables<F> {
         &self.tables
     }
@@ -147,7 +137,7 @@ impl<F: Family> Reorientation<F> {
     pub fn assess(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment {
         self.check(coefficients);
         let mut workspace = self.workspace();
-        let measure = Measure { problem: self, coefficients, workspace: &mut workspace };
+        let measure = Measure { given: self.given(), coefficients, workspace: &mut workspace };
         let attitude_error = self.width.run(measure);
         let peaks = self.family.peaks(&workspace.samples, coefficients);
         let (duration, excess) = match duration {
@@ -177,7 +167,7 @@ impl<F: Family> Reorientation<F> {
     ) -> Evaluation {
         self.check(coefficients);
         let (attitude_error, largest) =
-            self.width.run(Fitness { problem: self, coefficients, duration, workspace });
+            self.width.run(Fitness { given: self.given(), coefficients, duration, workspace });
         let (duration, excess) = match duration {
             Some(duration) => {
                 let allowed = powers(duration);
@@ -195,7 +185,7 @@ impl<F: Family> Reorientation<F> {
 
     /// The rotation from the goal to where the base ends after it has turned so.
     pub(super) fn error_after(&self, net: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
-        self.task.goal.base.inverse() * self.task.start.base * net
+        self.given().error_after(net)
     }
 
     /// The base's rotation over the path with these coefficients.
@@ -205,7 +195,7 @@ impl<F: Family> Reorientation<F> {
     /// Panics when there are more or fewer coefficients than the family's dimension.
     pub fn net_rotation(&self, coefficients: &[f64]) -> UnitQuaternion<f64> {
         self.check(coefficients);
-        self.width.run(Turn { problem: self, coefficients, joints: &mut Vec::new() })
+        self.width.run(Turn { given: self.given(), coefficients, joints: &mut Vec::new() })
     }
 }
 

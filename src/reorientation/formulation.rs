@@ -6,7 +6,8 @@ use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::fitness::{Accuracy, Assessment, Reorientation};
+use super::accuracy::Accuracy;
+use super::fitness::{Assessment, Reorientation};
 use super::measure::Workspace;
 use super::settings::Boxes;
 use crate::search::{

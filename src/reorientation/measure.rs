@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::UnitQuaternion;
 
-use super::fitness::{Accuracy, Reorientation};
+use super::accuracy::Accuracy;
 use crate::attitude::{Midpoints, Rollout};
 use crate::lanes::{LaneWork, Lanes};
 use crate::momentum::{Arm, JointState};
@@ -52,10 +52,37 @@ pub(super) fn powers(duration: f64) -> [f64; 3] {
     [duration, duration * duration, duration * duration * duration]
 }
 
+/// What is the same for all motions of a problem.
+pub(super) struct Given<'a, F: Family> {
+    pub(super) task: &'a Task,
+    pub(super) family: &'a F,
+    pub(super) tables: &'a Tables<F>,
+}
+
+#[expect(
+    clippy::expl_impl_clone_on_copy,
+    reason = "derived, it would ask the family to be `Clone`"
+)]
+impl<F: Family> Clone for Given<'_, F> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+// Not derived, which would ask the family to be `Copy`.
+impl<F: Family> Copy for Given<'_, F> {}
+
+impl<F: Family> Given<'_, F> {
+    /// The rotation from the goal to where the base ends after it has turned so.
+    pub(super) fn error_after(&self, net: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+        self.task.goal.base.inverse() * self.task.start.base * net
+    }
+}
+
 /// All that the cost follows from: `‖δq_b‖`, and of each order the largest peak as a multiple of its limit,
 /// where it matters.
 pub(super) struct Fitness<'a, F: Family> {
-    pub(super) problem: &'a Reorientation<F>,
+    pub(super) given: Given<'a, F>,
     pub(super) coefficients: &'a [f64],
     pub(super) duration: Option<f64>,
     pub(super) workspace: &'a mut Workspace<F>,
@@ -66,8 +93,8 @@ impl<F: Family> LaneWork for Fitness<'_, F> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> (f64, [f64; 3]) {
-        let Self { problem, coefficients, duration, workspace } = self;
-        let error = Measure { problem, coefficients, workspace }.run::<T>();
+        let Self { given, coefficients, duration, workspace } = self;
+        let error = Measure { given, coefficients, workspace }.run::<T>();
         let matters = |known: [f64; 3]| match duration {
             // Within a limit it does not matter how far.
             Some(duration) => {
@@ -76,7 +103,7 @@ impl<F: Family> LaneWork for Fitness<'_, F> {
             }
             None => powers(longest_asked(known)),
         };
-        let (limits, family) = (&problem.task().limits, problem.family());
+        let (limits, family) = (&given.task.limits, given.family);
         let samples = &mut workspace.samples;
         let largest = family.largest_ratio::<T>(samples, limits, matters, coefficients);
         (error, largest)
@@ -85,7 +112,7 @@ impl<F: Family> LaneWork for Fitness<'_, F> {
 
 /// Samples a path, and finds `‖δq_b‖` of eq. 20 at its end.
 pub(super) struct Measure<'a, F: Family> {
-    pub(super) problem: &'a Reorientation<F>,
+    pub(super) given: Given<'a, F>,
     pub(super) coefficients: &'a [f64],
     pub(super) workspace: &'a mut Workspace<F>,
 }
@@ -95,16 +122,16 @@ impl<F: Family> LaneWork for Measure<'_, F> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> f64 {
-        let Self { problem, coefficients, workspace: Workspace { samples, joints, .. } } = self;
-        problem.family().sample::<T>(&problem.tables().sampler, coefficients, samples);
-        let net = Turn { problem, coefficients, joints }.run::<T>();
-        problem.error_after(net).imag().norm()
+        let Self { given, coefficients, workspace: Workspace { samples, joints, .. } } = self;
+        given.family.sample::<T>(&given.tables.sampler, coefficients, samples);
+        let net = Turn { given, coefficients, joints }.run::<T>();
+        given.error_after(net).imag().norm()
     }
 }
 
 /// The base's rotation over a path.
 pub(super) struct Turn<'a, F: Family> {
-    pub(super) problem: &'a Reorientation<F>,
+    pub(super) given: Given<'a, F>,
     pub(super) coefficients: &'a [f64],
     pub(super) joints: &'a mut Vec<JointState>,
 }
@@ -114,7 +141,7 @@ impl<F: Family> LaneWork for Turn<'_, F> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> UnitQuaternion<f64> {
-        let (family, Tables { arm, rollout, .. }) = (self.problem.family(), self.problem.tables());
+        let (family, Tables { arm, rollout, .. }) = (self.given.family, self.given.tables);
         rollout.net_rotation::<T>(arm, family, self.coefficients, self.joints)
     }
 }

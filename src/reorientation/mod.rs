@@ -1,5 +1,6 @@
 //! The reorientation task: a problem to search in several formulations, and a subject of experiments.
 
+mod accuracy;
 mod best_known;
 mod derivatives;
 #[cfg(feature = "harness")]
@@ -27,13 +28,14 @@ mod sweep;
 mod symbols;
 mod terms;
 
+pub use accuracy::Accuracy;
 pub use best_known::{BestKnown, fingerprint};
 #[cfg(feature = "harness")]
 pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]
 pub use export::write_motions;
 pub use export::{ExportError, INTERVALS, MotionFormat, write_motion};
-pub use fitness::{Accuracy, Assessment, Reorientation};
+pub use fitness::{Assessment, Reorientation};
 pub use formulation::{Formulated, Formulation};
 #[cfg(feature = "harness")]
 pub use kind::ReorientationTask;

@@ -6,7 +6,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::fitness::{Accuracy, Assessment, Reorientation, attitude_error};
+use super::accuracy::Accuracy;
+use super::fitness::{Assessment, Reorientation, attitude_error};
 use super::settings::{DEFAULTS, TrajectoryTable, check_terms};
 use crate::input::{Document, Finite, InputError, Positive};
 use crate::momentum::base_twist;

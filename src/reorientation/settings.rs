@@ -7,7 +7,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::fitness::{Accuracy, Reorientation};
+use super::accuracy::Accuracy;
+use super::fitness::Reorientation;
 use crate::input::{Document, InputError, Positive, count, positive_interval};
 use crate::task::{Task, TaskTable};
 use crate::trajectory::{Limits, Peaks, SinePolynomial};
