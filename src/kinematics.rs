@@ -33,7 +33,7 @@ pub struct LinkPose<'a, T> {
 
 /// The outward sweep: an iterator over the links, in the robot's order.
 ///
-/// `PLAIN` leaves out what [`Robot::is_plain`] robots do not need.
+/// `PLAIN` leaves out what robots do not need that are chains of revolute joints.
 #[derive(Debug)]
 pub struct Outward<'a, T, const PLAIN: bool = false> {
     robot: &'a Robot,

@@ -258,7 +258,9 @@ fn no_files_of_a_module_use_each_other_in_a_circle() {
             break;
         }
         uses.retain(|path, _| !free.contains(path));
-        uses.values_mut().for_each(|used| used.retain(|path| !free.contains(path)));
+        for used in uses.values_mut() {
+            used.retain(|path| !free.contains(path));
+        }
     }
     // And those that nothing left uses.
     loop {

@@ -66,7 +66,7 @@ fn stored_tables_have_the_columns_in_order() {
         let file = fs::File::open(file.path()).unwrap();
         let frame = ParquetReader::new(file).finish().unwrap();
         let found: Vec<&str> =
-            frame.get_column_names().into_iter().map(|name| name.as_str()).collect();
+            frame.get_column_names().into_iter().map(PlSmallStr::as_str).collect();
         assert_eq!(found, names(columns, facts, measures), "{table}");
     }
 }

@@ -102,7 +102,7 @@ enum CliError {
     Input {
         message: String,
         #[source_code]
-        text: NamedSource<String>,
+        text: Arc<NamedSource<String>>,
         #[label("here")]
         span: SourceSpan,
         #[help]
@@ -193,7 +193,7 @@ impl From<InputError> for CliError {
                 let name = mistake.path.display().to_string();
                 Self::Input {
                     message: mistake.message,
-                    text: NamedSource::new(name, mistake.text).with_language("TOML"),
+                    text: Arc::new(NamedSource::new(name, mistake.text).with_language("TOML")),
                     span: mistake.span.into(),
                     help: mistake.help,
                 }

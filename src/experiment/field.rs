@@ -209,10 +209,10 @@ fn combinations<'i>(
         (if is_beside { &mut beside } else { &mut choice }).insert(key, value);
     }
     if choice.is_empty() {
-        return match beside.contains_key(OUTSIDE) {
-            true => Ok((beside, vec![choice])),
-            false => Err(no_optimiser(span, document)),
-        };
+        if beside.contains_key(OUTSIDE) {
+            return Ok((beside, vec![choice]));
+        }
+        return Err(no_optimiser(span, document));
     }
     check_choice(&choice, document)?;
     let mut choices = vec![choice];
@@ -235,15 +235,17 @@ fn check_formulations(
     for (key, value) in table {
         match value.get_ref() {
             DeValue::Table(inner) => check_formulations(inner, spaces, document)?,
-            DeValue::String(found) if *key.get_ref() == *"formulation" && !spaces.is_empty() => {
-                if !spaces.contains(&found.as_ref()) {
-                    let known = spaces.iter().map(|space| format!("`{space}`"));
-                    let known = known.collect::<Vec<_>>().join(", ");
-                    let message = format!("unknown formulation `{found}`, expected one of {known}");
-                    let help = nearest(found, spaces.iter().copied());
-                    let help = help.map(|near| format!("did you mean `{near}`?"));
-                    return Err(document.error_at(value.span(), message, help));
-                }
+            DeValue::String(found)
+                if *key.get_ref() == *"formulation"
+                    && !spaces.is_empty()
+                    && !spaces.contains(&found.as_ref()) =>
+            {
+                let known = spaces.iter().map(|space| format!("`{space}`"));
+                let known = known.collect::<Vec<_>>().join(", ");
+                let message = format!("unknown formulation `{found}`, expected one of {known}");
+                let help = nearest(found, spaces.iter().copied());
+                let help = help.map(|near| format!("did you mean `{near}`?"));
+                return Err(document.error_at(value.span(), message, help));
             }
             _ => {}
         }

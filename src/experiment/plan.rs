@@ -166,12 +166,11 @@ fn check_entry(entry: &Entry, all: &[Instance], document: &Document) -> Result<(
     for instance in all {
         let (name, spaces) = (instance.subject.name(), instance.subject.spaces());
         if let Some(asked) = entrant.formulation.as_ref().filter(|asked| !spaces.contains(asked)) {
-            return error(match spaces.is_empty() {
-                true => format!("found the formulation `{asked}`, which `{name}` does not have"),
-                false => format!(
-                    "found the formulation `{asked}`, expected one of `{name}`: {}",
-                    spaces.join(", ")
-                ),
+            return error(if spaces.is_empty() {
+                format!("found the formulation `{asked}`, which `{name}` does not have")
+            } else {
+                let spaces = spaces.join(", ");
+                format!("found the formulation `{asked}`, expected one of `{name}`: {spaces}")
             });
         }
         let space = entrant.space(instance);

@@ -159,6 +159,6 @@ fn one(
     };
     // What the run did not spend will not be spent.
     watch.add_evaluations(oracle.remaining());
-    let ended = Ended { status, judgement, is_unjudged, seconds, threads, oracle };
+    let ended = Ended { status, judgement, seconds, is_unjudged, threads, oracle };
     Ok(Some(Record::new(plan, run, ended).map_err(StoreError::from)?))
 }

@@ -77,8 +77,8 @@ table! {
     CURVATURES = "curvatures", Count, "second derivatives made";
     CONIC_SOLVES = "conic_solves", Count, "conic subproblems solved or given up";
     CONIC_FAILURES = "conic_failures", Count, "conic subproblems given up";
-    SECONDS = "seconds", Real, "wall time [s]";
-    SECONDS_IN_PROBLEM = "seconds_in_problem", Real, "the part of it inside the problem [s]";
+    SECONDS = "seconds", Real, "wall time in seconds";
+    SECONDS_IN_PROBLEM = "seconds_in_problem", Real, "the part of it inside the problem";
     STATUS = "status", Text, "`finished`, `budget-spent`, `no-derivatives`, `failed` or `panicked`";
     MESSAGE = "message", Text, "why the run failed, or what the panic said and where";
     VERSION = "version", Text, "version of the program";
@@ -101,6 +101,6 @@ table! {
     clocks:
     KEY = "key", Text, "the run's key";
     EVALUATION = "evaluation", Count, "which evaluation, counted from one";
-    SECONDS = "seconds", Real, "wall time since the run began [s]";
+    SECONDS = "seconds", Real, "wall time since the run began, in seconds";
     THREADS = "threads", Count, "how many runs were made at a time";
 }

@@ -95,7 +95,7 @@ pub fn standing(plan: &Plan, store: &Store) -> Result<Standing, StoreError> {
                 let Some(&run) = keys.get(i).and_then(|key| planned.get(key)) else {
                     match written.get(i) {
                         Some(format) if format != FORMAT => {
-                            *formats.entry(format).or_insert(0) += 1
+                            *formats.entry(format).or_insert(0) += 1;
                         }
                         _ => others += 1,
                     }

@@ -86,6 +86,7 @@ pub trait Subject: Send + Sync {
     }
 
     /// The letter for its cost.
+    #[expect(clippy::unnecessary_literal_bound, reason = "others own their letter")]
     fn cost_symbol(&self) -> &str {
         "f"
     }

@@ -30,7 +30,7 @@ mod terms;
 
 pub use accuracy::Accuracy;
 pub use best_known::{BestKnown, fingerprint};
-#[cfg(feature = "harness")]
+#[cfg(all(feature = "cli", feature = "harness"))]
 pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]
 pub use export::write_motions;

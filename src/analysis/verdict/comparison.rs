@@ -215,7 +215,7 @@ impl<'a> Standings<'a> {
     fn dependence(&self) -> Option<&'static str> {
         let plan = self.analysis.plan;
         let mut own = plan.by_kind();
-        let own = own.iter_mut().map(|(_, instances)| {
+        let mut own = own.iter_mut().map(|(_, instances)| {
             let is_block = |instance: &&Instance| {
                 let blocks = self.blocks.instances.iter();
                 blocks.clone().any(|&i| plan.instances[i].label == instance.label)
@@ -223,7 +223,7 @@ impl<'a> Standings<'a> {
             instances.retain(is_block);
             &*instances
         });
-        own.filter_map(|i| i.first()?.subject.dependence(i)).next()
+        own.find_map(|i| i.first()?.subject.dependence(i))
     }
 
     fn hopeless(&self) -> String {

@@ -19,6 +19,7 @@ mod tests;
 mod words;
 
 use motion_charts::MOTION_NAMES;
+#[cfg(feature = "cli")]
 pub(crate) use motion_charts::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]
 pub(super) use motion_table::motion_table;

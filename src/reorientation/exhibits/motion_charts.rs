@@ -1,5 +1,6 @@
 //! The charts of a motion.
 
+#[cfg(feature = "cli")]
 use std::path::Path;
 
 use super::base_attitude::base_attitude;
@@ -7,6 +8,7 @@ use super::derivatives::derivatives;
 use super::joint_angles::joint_angles;
 use super::snapshots::snapshots;
 use crate::exhibit::Chart;
+#[cfg(feature = "cli")]
 use crate::figure::FigureError;
 use crate::reorientation::motion::Motion;
 use crate::task::Task;
@@ -57,6 +59,7 @@ pub(super) fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
 }
 
 /// Writes the charts of a motion into a folder.
+#[cfg(feature = "cli")]
 pub(crate) fn write_motion_figures(
     folder: &Path,
     motion: &Motion,
