@@ -67,10 +67,14 @@ impl Problem for Sum {
 
 impl Composite for Sum {
     fn linearise(&self, x: &[f64]) -> Result<Linearisation, Failure> {
-        let term = |(weight, shape, pieces): &(f64, Shape, Vec<Quadratic>)| Term {
-            weight: *weight,
-            shape: *shape,
-            pieces: pieces.iter().zip(0..).map(|(q, track)| q.piece(track, x)).collect(),
+        let term = |(weight, shape, pieces): &(f64, Shape, Vec<Quadratic>)| {
+            let term = match shape {
+                Shape::Norm => Term::norm,
+                Shape::Max => Term::max,
+                Shape::Hinge => Term::hinge,
+            };
+            let pieces = pieces.iter().zip(0..).map(|(q, track)| q.piece(track, x));
+            term(*weight, pieces.collect())
         };
         Ok(Linearisation { terms: self.terms.iter().map(term).collect() })
     }

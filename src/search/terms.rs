@@ -92,22 +92,29 @@ pub struct Term {
     pub shape: Shape,
     /// `v`. Of a maximum or a hinge, pieces that matter nowhere near may be left out.
     pub pieces: Vec<Piece>,
+    /// What `φ(v)` is known never to fall below at any point, however low linearised pieces lie.
+    pub floor: f64,
 }
 
 impl Term {
     /// `w ‖v‖`.
     pub fn norm(weight: f64, pieces: Vec<Piece>) -> Self {
-        Self { weight, shape: Shape::Norm, pieces }
+        Self { weight, shape: Shape::Norm, pieces, floor: 0.0 }
     }
 
-    /// `w max_i v_i`.
+    /// `w max_i v_i`, without a floor.
     pub fn max(weight: f64, pieces: Vec<Piece>) -> Self {
-        Self { weight, shape: Shape::Max, pieces }
+        Self { weight, shape: Shape::Max, pieces, floor: f64::NEG_INFINITY }
     }
 
     /// `w Σ_i max(0, v_i)`.
     pub fn hinge(weight: f64, pieces: Vec<Piece>) -> Self {
-        Self { weight, shape: Shape::Hinge, pieces }
+        Self { weight, shape: Shape::Hinge, pieces, floor: 0.0 }
+    }
+
+    /// The term with this floor.
+    pub fn at_least(self, floor: f64) -> Self {
+        Self { floor, ..self }
     }
 
     /// `w φ(v)`.
@@ -118,6 +125,11 @@ impl Term {
     /// `φ(v)`.
     pub fn value(&self) -> f64 {
         self.shape.of(self.pieces.iter().map(|piece| piece.value))
+    }
+
+    /// `φ` of other values of the pieces, such as linearised ones, and no less than the floor.
+    pub fn value_at(&self, values: impl IntoIterator<Item = f64>) -> f64 {
+        larger(self.shape.of(values), self.floor)
     }
 
     /// By how much each piece changes over a step, to first order.
@@ -190,6 +202,15 @@ mod tests {
             }
         }
         assert_eq!(Shape::Max.of([-3.0, -4.0]), -3.0);
+    }
+
+    #[test]
+    fn floors_bound_other_values_only() {
+        let term = Term::max(2.0, vec![Piece::new(0, -3.0, [])]);
+        assert_eq!(term.value_at([-5.0]), -5.0);
+        let term = term.at_least(-4.0);
+        assert_eq!([term.value(), term.value_at([-5.0]), term.value_at([1.0])], [-3.0, -4.0, 1.0]);
+        assert!(term.value_at([f64::NAN]).is_nan());
     }
 
     #[test]

@@ -170,12 +170,12 @@ impl Model<'_> {
         self.parts.terms.iter().enumerate().filter(move |(_, term)| term.shape == shape)
     }
 
-    /// The model's cost of a step.
+    /// The model's cost of a step, no term below its floor.
     fn cost(&self, values: &PerPiece, d: &DVector<f64>) -> f64 {
         let terms = self.parts.terms.iter().zip(self.weights).zip(values);
         let cost = |((term, weight), values): ((&Term, &f64), &Vec<f64>)| {
             let there = values.iter().zip(term.changes(d)).map(|(value, change)| value + change);
-            weight * term.shape.of(there)
+            weight * term.value_at(there)
         };
         terms.map(cost).sum::<f64>() + d.dot(&(self.curvature * d)) / 2.0
     }
