@@ -66,9 +66,11 @@ impl<F: Family> Midpoints<F> {
         let mut evaluator = Evaluator::<T, F>::new(robot, family);
         let mut parts = Vec::new();
         let mut following = vec![Quat::identity(); self.times];
+        let joints = family.joints();
         for first in (0..self.times).step_by(T::COUNT) {
-            let phases = evaluator.phases(&self.nodes, first, coefficients);
-            let node = evaluator.evaluate(&phases);
+            let (mut phases, mut node) = (Vec::with_capacity(joints), Node::new(joints));
+            evaluator.phases(&self.nodes, first, coefficients, &mut phases);
+            evaluator.evaluate(&phases, &mut node);
             so3::exp(node.rate.times(width / 2.0)).spread(&mut following[first..]);
             parts.push(Part { first, phases, node });
         }
@@ -81,17 +83,22 @@ impl<F: Family> Midpoints<F> {
 
         let dimension = family.dimension();
         let mut curvature = DMatrix::zeros(dimension, dimension);
-        let mut slopes = vec![Matrix3xX::zeros(dimension); self.times];
+        // One block of columns per time.
+        let mut slopes = Matrix3xX::zeros(self.times * dimension);
+        let mut beside = Node::new(joints);
         for part in parts {
             let turn = Quat::<T>::gather(&following[part.first..]);
             let turn_back = turn.inverse().matrix().times(width);
             self.add_slopes(family, &part, turn_back, &mut slopes);
             let p = turn_back.tr_mul(Vec3::of(p));
-            self.add_bend(&mut evaluator, family, part, p, &mut curvature);
+            self.add_bend(&mut evaluator, family, part, p, &mut beside, &mut curvature);
         }
         let mut by_coefficient = Matrix3xX::zeros(dimension);
-        for own in slopes[..self.steps].iter().rev() {
-            curvature.gemm_tr(1.0, &(p.cross_matrix() * own), &by_coefficient, 1.0);
+        let mut moved = by_coefficient.clone();
+        for step in (0..self.steps).rev() {
+            let own = slopes.columns(step * dimension, dimension);
+            p.cross_matrix().mul_to(&own, &mut moved);
+            curvature.gemm_tr(1.0, &moved, &by_coefficient, 1.0);
             by_coefficient += own;
         }
         curvature = (&curvature + curvature.transpose()) / 2.0;
@@ -105,16 +112,16 @@ impl<F: Family> Midpoints<F> {
         family: &F,
         Part { first, node, .. }: &Part<T>,
         turn: Mat3<T>,
-        slopes: &mut [Matrix3xX<f64>],
+        slopes: &mut Matrix3xX<f64>,
     ) {
-        for joint in 0..family.joints() {
+        for (joint, own) in node.joints.iter().enumerate() {
             for k in family.support::<T>(&self.nodes, joint, *first) {
                 let [bump, slope] = family.bump::<T>(&self.nodes, joint, k, *first);
-                let change = node.by_phase[joint] * bump + node.by_phase_rate[joint] * slope;
+                let change = own.by_phase * bump + own.by_phase_rate * slope;
                 let column = family.coefficients_of(joint).start + k;
-                let each = (turn * change).lanes();
-                for (own, change) in slopes[*first..].iter_mut().zip(&each[..T::COUNT]) {
-                    own.set_column(column, &Vector3::from(*change));
+                for (time, change) in (*first..).zip(&(turn * change).lanes()[..T::COUNT]) {
+                    let place = time * family.dimension() + column;
+                    slopes.set_column(place, &Vector3::from(*change));
                 }
             }
         }
@@ -129,6 +136,7 @@ impl<F: Family> Midpoints<F> {
         family: &F,
         Part { first, mut phases, node }: Part<T>,
         p: Vec3<T>,
+        beside: &mut Node<T>,
         sum: &mut DMatrix<f64>,
     ) {
         let joints = family.joints();
@@ -146,14 +154,15 @@ impl<F: Family> Midpoints<F> {
         for j in 0..joints {
             let here = phases[j];
             phases[j][0] += T::of(STEP);
-            let beside = evaluator.evaluate(&phases);
+            evaluator.evaluate(&phases, beside);
             phases[j] = here;
             let (start, count, column) = parts[j];
             let columns = &bumps[start..start + count];
             for (i, &(start, count, row_place)) in parts.iter().enumerate() {
                 let per_step = T::of(1.0 / STEP);
-                let phase = p.dot(beside.by_phase[i] - node.by_phase[i]) * per_step;
-                let mixed = p.dot(beside.by_phase_rate[i] - node.by_phase_rate[i]) * per_step;
+                let (there, here) = (beside.joints[i], node.joints[i]);
+                let phase = p.dot(there.by_phase - here.by_phase) * per_step;
+                let mixed = p.dot(there.by_phase_rate - here.by_phase_rate) * per_step;
                 for (k, &[value, slope]) in bumps[start..start + count].iter().enumerate() {
                     let row = value * phase + (slope + slope) * mixed;
                     for (l, &[other, _]) in columns.iter().enumerate() {

@@ -6,14 +6,29 @@ use crate::robot::Robot;
 use crate::trajectory::{AtPhase, Family};
 use crate::vec3::Vec3;
 
-/// The base's rate `ω` \[rad\], by normalised time, with its derivatives by each joint's phase `s` and
-/// by `s'`.
+/// The base's rate `ω` \[rad\], by normalised time, with its derivatives.
 pub(super) struct Node<T> {
     pub(super) rate: Vec3<T>,
+    /// One per joint.
+    pub(super) joints: Vec<PhaseSlopes<T>>,
+}
+
+/// Derivatives of the base's rate by one joint's phase `s`.
+#[derive(Clone, Copy)]
+pub(super) struct PhaseSlopes<T> {
     /// `∂ω/∂s`.
-    pub(super) by_phase: Vec<Vec3<T>>,
+    pub(super) by_phase: Vec3<T>,
     /// `∂ω/∂s'`.
-    pub(super) by_phase_rate: Vec<Vec3<T>>,
+    pub(super) by_phase_rate: Vec3<T>,
+}
+
+impl<T: Lanes> Node<T> {
+    /// Room for one.
+    #[inline(always)]
+    pub(super) fn new(joints: usize) -> Self {
+        let slopes = PhaseSlopes { by_phase: Vec3::zero(), by_phase_rate: Vec3::zero() };
+        Self { rate: Vec3::zero(), joints: vec![slopes; joints] }
+    }
 }
 
 /// Room to evaluate nodes in.
@@ -48,18 +63,18 @@ impl<'a, T: Lanes, F: Family> Evaluator<'a, T, F> {
         nodes: &F::Nodes,
         place: usize,
         coefficients: &[f64],
-    ) -> Vec<[T; 2]> {
-        let mut phases = Vec::with_capacity(self.family.joints());
+        phases: &mut Vec<[T; 2]>,
+    ) {
+        phases.clear();
         for joint in 0..self.family.joints() {
             let own = &coefficients[self.family.coefficients_of(joint)];
             phases.push(self.family.phase(nodes, place, joint, own));
         }
-        phases
     }
 
     /// The node where joints have these phases, whether a path meets them or not.
     #[inline(always)]
-    pub(super) fn evaluate(&mut self, phases: &[[T; 2]]) -> Node<T> {
+    pub(super) fn evaluate(&mut self, phases: &[[T; 2]], node: &mut Node<T>) {
         self.joints.clear();
         for (joint, &phase) in phases.iter().enumerate() {
             let at = self.family.at_phase(joint, phase);
@@ -67,16 +82,13 @@ impl<'a, T: Lanes, F: Family> Evaluator<'a, T, F> {
             self.joints.push(at);
         }
         self.slopes.evaluate(self.robot, &self.angles, &self.rates);
-        let mut node = Node {
-            rate: self.slopes.angular,
-            by_phase: Vec::with_capacity(phases.len()),
-            by_phase_rate: Vec::with_capacity(phases.len()),
-        };
+        node.rate = self.slopes.angular;
         for (joint, at) in self.joints.iter().enumerate() {
             let (by_angle, by_rate) = (self.slopes.by_position[joint], self.slopes.by_rate[joint]);
-            node.by_phase.push(by_angle * at.angle_slope + by_rate * at.rate_slope);
-            node.by_phase_rate.push(by_rate * at.angle_slope);
+            node.joints[joint] = PhaseSlopes {
+                by_phase: by_angle * at.angle_slope + by_rate * at.rate_slope,
+                by_phase_rate: by_rate * at.angle_slope,
+            };
         }
-        node
     }
 }

@@ -45,7 +45,7 @@ impl<F: Family> Rollout<F> {
         let mut all = Vec::new();
         let mut rotations = Vec::new();
         for first in (0..self.panels).step_by(T::COUNT) {
-            let panels = self.panels(&mut evaluator, coefficients, first);
+            let panels = self.panels(&mut evaluator, family, coefficients, first);
             let mut rotation = panels.steps[0];
             for step in &panels.steps[1..] {
                 rotation = rotation.then(*step);
@@ -78,14 +78,18 @@ impl<F: Family> Rollout<F> {
     fn panels<T: Lanes>(
         &self,
         evaluator: &mut Evaluator<'_, T, F>,
+        family: &F,
         coefficients: &[f64],
         first: usize,
     ) -> Panels<T> {
         let mut nodes = Vec::with_capacity(NODES);
         let mut rates = [Vec3::zero(); NODES];
+        let joints = family.joints();
+        let mut phases = Vec::with_capacity(joints);
         for (n, rate) in rates.iter_mut().enumerate() {
-            let phases = evaluator.phases(&self.nodes, Self::place(first, n), coefficients);
-            let node = evaluator.evaluate(&phases);
+            let mut node = Node::new(joints);
+            evaluator.phases(&self.nodes, Self::place(first, n), coefficients, &mut phases);
+            evaluator.evaluate(&phases, &mut node);
             *rate = node.rate;
             nodes.push(node);
         }
@@ -123,9 +127,9 @@ impl<F: Family> Rollout<F> {
         let mut sums = vec![Vec3::zero(); family.dimension()];
         for (n, node) in panels.nodes.iter().enumerate() {
             let place = Self::place(panels.first, n);
-            for joint in 0..family.joints() {
-                let by_phase = turns[n] * node.by_phase[joint];
-                let by_phase_rate = turns[n] * node.by_phase_rate[joint];
+            for (joint, slopes) in node.joints.iter().enumerate() {
+                let by_phase = turns[n] * slopes.by_phase;
+                let by_phase_rate = turns[n] * slopes.by_phase_rate;
                 let first = family.coefficients_of(joint).start;
                 for k in family.support::<T>(&self.nodes, joint, place) {
                     let [bump, slope] = family.bump::<T>(&self.nodes, joint, k, place);
