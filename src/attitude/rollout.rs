@@ -70,6 +70,24 @@ impl<F: Family> Rollout<F> {
         coefficients: &[f64],
         joints: &mut Vec<JointState>,
     ) -> UnitQuaternion<f64> {
+        let net = if arm.is_plain() {
+            self.compose::<T, true>(arm, family, coefficients, joints)
+        } else {
+            self.compose::<T, false>(arm, family, coefficients, joints)
+        };
+        let mount = arm.mount();
+        mount * UnitQuaternion::from(net) * mount.inverse()
+    }
+
+    /// The rotation along the mount's axes.
+    #[inline(always)]
+    fn compose<T: Lanes, const PLAIN: bool>(
+        &self,
+        arm: &Arm,
+        family: &F,
+        coefficients: &[f64],
+        joints: &mut Vec<JointState>,
+    ) -> Quat<f64> {
         joints.resize(NODES * family.joints(), JointState::default());
         let mut net = Quat::identity();
         for group in (0..self.panels).step_by(MOST) {
@@ -78,7 +96,7 @@ impl<F: Family> Rollout<F> {
                 self.drive::<T>(arm, family, coefficients, group + part, joints);
                 let mut rates = [Vec3::zero(); NODES];
                 for (rate, joints) in rates.iter_mut().zip(joints.chunks_exact(family.joints())) {
-                    *rate = arm.base_rate::<T>(joints);
+                    *rate = arm.base_rate::<T, PLAIN>(joints);
                 }
                 let mut panel = Quat::identity();
                 for step in &self.moments {
@@ -88,8 +106,7 @@ impl<F: Family> Rollout<F> {
             }
             net = net.then(product(panels));
         }
-        let mount = arm.mount();
-        mount * UnitQuaternion::from(net) * mount.inverse()
+        net
     }
 
     /// Every joint's state at every node of the panels from `first` on.

@@ -142,11 +142,17 @@ impl Arm {
         &self.links
     }
 
+    /// Whether it is a chain of joints that turn, which [`base_rate`](Self::base_rate) goes through with
+    /// fewer operations.
+    pub fn is_plain(&self) -> bool {
+        self.is_plain
+    }
+
     /// The base's angular velocity \[rad/s\] **along the mount's axes** with zero total momentum, from
-    /// the states of all links.
+    /// the states of all links. `PLAIN` only if the arm [is](Self::is_plain).
     #[inline(always)]
-    pub fn base_rate<T: Lanes>(&self, states: &[JointState]) -> Vec3<T> {
-        let outer = if self.is_plain { self.chain(states) } else { self.tree(states) };
+    pub fn base_rate<T: Lanes, const PLAIN: bool>(&self, states: &[JointState]) -> Vec3<T> {
+        let outer = if PLAIN { self.chain(states) } else { self.tree(states) };
         let Outer { first_moment, inertia, linear, angular } = outer;
         let mut system = RigidBody { mass: self.base.mass, first_moment, inertia };
         system.first_moment += self.base.first_moment.lift();
@@ -198,7 +204,7 @@ impl Arm {
             state
         });
         let states: Vec<_> = states.collect();
-        self.mount * Vector3::from(self.base_rate::<f64>(&states))
+        self.mount * Vector3::from(self.base_rate::<f64, false>(&states))
     }
 }
 
