@@ -7,16 +7,16 @@ use crate::figure::sheet::printable;
 use crate::figure::style::{COLOURS, DASHES, INK, Marker, OUTSIDE_COLOURS, PAPER, Stroke, mix};
 
 /// The kinds of optimisers in the order of their colours and markers.
-const KINDS: [&str; 8] =
+const KINDS: [&str; COLOURS.len()] =
     ["scp", "hybrid", "cma-es", "l-shade", "de", "pso", "nelder-mead", "random"];
 
 /// Most optimisers in one panel.
 const MOST_IN_A_PANEL: usize = 8;
 
 /// How the optimisers of a field look, by label: colour tells the kind, dashes the formulation, the
-/// marker the kind or, of a hybrid, what searches first. Kinds of other programs have colours that none of this program's
-/// has. Of several that share all this, every other one
-/// has hollow markers, and later ones lighter and darker colours.
+/// marker the kind or, of a hybrid, what searches first. Kinds of other programs have colours that none
+/// of this program's has. Of several that share all this, every other one has hollow markers, and later
+/// ones lighter and darker colours.
 #[derive(Debug, Clone)]
 pub(super) struct Looks {
     /// Label, kind and stroke in the field's order.

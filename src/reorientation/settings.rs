@@ -94,13 +94,13 @@ impl TaskFile {
 
 impl TrajectoryTable {
     /// Free coefficients per joint.
-    pub fn terms(&self) -> &Spanned<usize> {
+    pub(crate) fn terms(&self) -> &Spanned<usize> {
         &self.terms
     }
 
     /// The same settings with another number of terms.
     #[must_use]
-    pub fn with_terms(&self, terms: Spanned<usize>) -> Self {
+    pub(crate) fn with_terms(&self, terms: Spanned<usize>) -> Self {
         Self { terms, ..self.clone() }
     }
 

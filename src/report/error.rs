@@ -32,24 +32,28 @@ pub enum ReportError {
     File(#[from] FileError),
 }
 
+#[doc(hidden)]
 impl From<FigureError> for ReportError {
     fn from(error: FigureError) -> Self {
         Self::Figure(error.to_string())
     }
 }
 
+#[doc(hidden)]
 impl From<PolarsError> for ReportError {
     fn from(error: PolarsError) -> Self {
         Self::Table(error.to_string())
     }
 }
 
+#[doc(hidden)]
 impl From<minijinja::Error> for ReportError {
     fn from(error: minijinja::Error) -> Self {
         Self::Template(error.to_string())
     }
 }
 
+#[doc(hidden)]
 impl From<serde_json::Error> for ReportError {
     fn from(error: serde_json::Error) -> Self {
         Self::Data(error.into())

@@ -16,7 +16,7 @@ impl Robot {
     /// `inertia` about that, `xx, yy, zz, xy, xz, yz` \[kg m²\]. A joint has a `parent`, the index of a
     /// joint before it or `null`, a `type`, an `axis`, a unit vector, a `point` on a revolute joint's axis,
     /// the nearest to the base's centre of mass, and a `range` \[rad or m\].
-    pub fn identity(&self) -> Value {
+    pub(crate) fn identity(&self) -> Value {
         let mut frames: Vec<Rigid> = Vec::new();
         let mut movers: Vec<Option<usize>> = Vec::new();
         let mut joints = Vec::new();

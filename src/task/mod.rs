@@ -32,7 +32,7 @@ impl Task {
     /// All that a motion's cost follows from, as JSON: [`Robot::identity`], `start` and `goal` with `joints`
     /// \[rad or m\] and `base`, a quaternion `w, x, y, z` from base axes to inertial axes, `limits` on rate,
     /// acceleration and jerk per joint, and `base_weight`.
-    pub fn identity(&self) -> Value {
+    pub(crate) fn identity(&self) -> Value {
         json!({
             "robot": self.robot.identity(),
             "start": self.start.identity(),

@@ -51,11 +51,26 @@ pub enum StoreError {
         /// The table.
         path: PathBuf,
         /// What came of reading it.
-        source: PolarsError,
+        source: Cause,
     },
     /// A record could not be made into a table, or a table not be looked through.
     #[error("cannot make a table of a run")]
-    Record(#[from] PolarsError),
+    Record(#[source] Cause),
+}
+
+/// An error of the library that reads and writes tables.
+type Cause = Box<dyn std::error::Error + Send + Sync>;
+
+#[doc(hidden)]
+impl From<PolarsError> for StoreError {
+    fn from(error: PolarsError) -> Self {
+        Self::Record(error.into())
+    }
+}
+
+/// Makes an error of a table an error of its file.
+fn damaged(path: PathBuf) -> impl FnOnce(PolarsError) -> StoreError {
+    move |error| StoreError::Damaged { path, source: error.into() }
 }
 
 impl Store {

@@ -7,7 +7,7 @@ use std::io;
 use polars::prelude::*;
 
 use super::stack::Stack;
-use super::{SEVERAL, Store, StoreError, TABLES, io_error};
+use super::{SEVERAL, Store, StoreError, TABLES, damaged, io_error};
 use crate::experiment::schema::runs;
 
 impl Store {
@@ -29,6 +29,7 @@ impl Store {
     /// Shows one table's `columns` of the `wanted` runs to the visitor, batch by batch; all columns where none are named.
     /// `optional` columns are null where a batch has none of the name. No run is shown
     /// twice, and none that is stored is left out, though others write and compact meanwhile.
+    #[doc(hidden)]
     pub fn visit(
         &self,
         table: &str,
@@ -57,6 +58,7 @@ impl Store {
     }
 
     /// One table of the named runs, in their order; runs that are not stored are left out.
+    #[doc(hidden)]
     pub fn read<'a>(
         &self,
         table: &str,
@@ -155,7 +157,7 @@ impl Store {
         let path = self.path("traces", batch);
         let rows = |file| ParquetReader::new(file).num_rows();
         let rows = File::open(&path).map_err(PolarsError::from).and_then(rows);
-        rows.map_err(|source| StoreError::Damaged { path, source })
+        rows.map_err(damaged(path))
     }
 
     /// Reads some columns of a batch's file of a table; optional ones that it lacks are null.
@@ -172,7 +174,7 @@ impl Store {
         let path = self.path(table, batch);
         let schema = |file| ParquetReader::new(file).schema();
         let schema = File::open(&path).map_err(PolarsError::from).and_then(schema);
-        let schema = schema.map_err(|source| StoreError::Damaged { path, source })?;
+        let schema = schema.map_err(damaged(path))?;
         let (has, lacks): (Vec<&str>, Vec<&str>) =
             optional.iter().partition(|name| schema.get(name).is_some());
         let mut frame = self.read_file(table, batch, Some(&[columns, &has].concat()))?;
@@ -202,7 +204,7 @@ impl Store {
         File::open(&path)
             .map_err(PolarsError::from)
             .and_then(read)
-            .map_err(|source| StoreError::Damaged { path, source })
+            .map_err(damaged(path))
     }
 }
 
