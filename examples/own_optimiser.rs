@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mine = Entrant::new("hill-climb", settings, HillClimb(0.05));
     let plan =
         Experiment::read(&Experiment::embedded(), &registry())?.with_optimiser(mine).plan()?;
-    let folder = Folder::create(path.as_ref(), plan, &registry())?;
+    let folder = Folder::create(path.as_ref(), plan)?;
     folder.run(Options::default(), &Watch::default(), &())?;
     println!("{}", report::write(&folder.plan, &folder.store, folder.path())?.summary);
     Ok(())

@@ -7,8 +7,8 @@ use std::error::Error;
 
 use driftless::experiment::{Experiment, Folder, Identity, Instance, Options};
 use driftless::optimiser::{CmaEs, De, NelderMead, Settings};
+use driftless::report;
 use driftless::search::{Bounds, Evaluation, Failure, Problem, Watch};
-use driftless::{registry, report};
 
 /// The lightest of three springs in a row that carry a load: their stiffnesses are the variables.
 struct Springs(Bounds);
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .with_optimiser(Settings::De(De::default()))
         .with_optimiser(Settings::NelderMead(NelderMead::default()))
         .plan()?;
-    let folder = Folder::create(path.as_ref(), plan, &registry())?;
+    let folder = Folder::create(path.as_ref(), plan)?;
     folder.run(Options::default(), &Watch::default(), &())?;
     println!("{}", report::write(&folder.plan, &folder.store, folder.path())?.summary);
     Ok(())

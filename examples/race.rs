@@ -27,9 +27,9 @@ const EXPERIMENT: &str = "
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("expected a folder for the results")?;
-    let (document, registry) = (Document::embedded("race.toml", EXPERIMENT), registry());
-    let plan = Experiment::read(&document, &registry)?.plan()?;
-    let folder = Folder::create(path.as_ref(), plan, &registry)?;
+    let document = Document::embedded("race.toml", EXPERIMENT);
+    let plan = Experiment::read(&document, &registry())?.plan()?;
+    let folder = Folder::create(path.as_ref(), plan)?;
     folder.run(Options::default(), &Watch::default(), &())?;
     let report = report::write(&folder.plan, &folder.store, folder.path())?;
     println!("{}\n{}", report.summary, report.page.display());

@@ -89,7 +89,7 @@ impl<T: Scalar> Quat<T> {
 }
 
 impl<T: Lanes> Quat<T> {
-    /// From one quaternion a lane.
+    /// From one quaternion per lane.
     #[inline(always)]
     pub fn gather(from: &[Quat<f64>]) -> Self {
         let part = |part: fn(&Quat<f64>) -> f64| {

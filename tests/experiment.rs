@@ -163,14 +163,14 @@ fn check(plan: &Plan, mood: Mood, always: bool, runs: &DataFrame, traces: &DataF
     let context = format!("{mood:?} {always} {optimiser} {}: {status} {message}", run.budget);
     let evaluations = whole(runs, "evaluations", i);
     let entrant = &plan.optimisers[run.optimiser];
-    let differentiates = entrant.needs_derivatives;
+    let differentiates = entrant.needs_derivatives();
     // `scp` has to differentiate before anything else.
-    let fewest = u64::from(entrant.kind != "scp");
+    let fewest = u64::from(entrant.kind() != "scp");
     assert!((fewest..=run.budget).contains(&evaluations), "{context}: {evaluations}");
     assert_eq!(text(runs, "key", i), run.key);
     assert!(runs.column("formulation").unwrap().get(i).unwrap().is_null(), "{context}");
     let expected: &[&str] = match mood {
-        _ if entrant.kind == "scp" => &["no-derivatives"],
+        _ if entrant.kind() == "scp" => &["no-derivatives"],
         Mood::Panics if always => &["panicked"],
         Mood::Panics if differentiates => &["panicked", "no-derivatives", "budget-spent"],
         Mood::Panics => &["panicked", "budget-spent", "finished"],

@@ -82,7 +82,7 @@ impl Composite for SumOfSquares {
         self.call()?;
         let x = DVector::from_column_slice(x);
         let piece = Piece { id: PieceId::alone(0), value: x.norm_squared(), gradient: 2.0 * &x };
-        Ok(Linearisation { terms: vec![Term::max(1.0, vec![piece])] })
+        Ok(Linearisation::new(vec![Term::max(1.0, vec![piece])]))
     }
 
     fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure> {

@@ -56,7 +56,7 @@ fn stored_tables_have_the_columns_in_order() {
     let experiment = Experiment::read(&document, &registry()).unwrap();
     let plan = experiment.with_budget(50.try_into().unwrap()).plan().unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let results = Folder::create(folder.path(), plan, &registry()).unwrap();
+    let results = Folder::create(folder.path(), plan).unwrap();
     results.run(Options::default(), &Watch::default(), &()).unwrap();
     let (facts, measures) = (results.plan.facts(), results.plan.measures());
     for (table, columns) in

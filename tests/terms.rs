@@ -76,7 +76,7 @@ impl Composite for Sum {
             let pieces = pieces.iter().zip(0..).map(|(q, track)| q.piece(track, x));
             term(*weight, pieces.collect())
         };
-        Ok(Linearisation { terms: self.terms.iter().map(term).collect() })
+        Ok(Linearisation::new(self.terms.iter().map(term).collect()))
     }
 
     fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure> {

@@ -1,4 +1,4 @@
-//! The base's rate at one time of a path a lane, and how it follows the joints' phases.
+//! The base's rate at one time of a path per lane, and how it follows the joints' phases.
 
 use crate::lanes::Lanes;
 use crate::momentum::RateSlopes;

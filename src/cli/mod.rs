@@ -176,7 +176,7 @@ impl From<crate::experiment::FolderError> for CliError {
             FolderError::NoResults(_) => {
                 Self::Usage { message: error.to_string(), help: Some(results::HELP.to_owned()) }
             }
-            FolderError::Another { .. } => Self::Usage {
+            FolderError::Another { .. } | FolderError::Unnamed { .. } => Self::Usage {
                 message: error.to_string(),
                 help: Some("choose another folder with --out".to_owned()),
             },

@@ -89,7 +89,7 @@ impl Run {
         let plan = experiment.plan()?;
         warn_of_subjects(&plan);
         let path = self.out.clone().unwrap_or_else(|| Path::new("results").join(&plan.name));
-        let folder = Folder::create(&path, plan, &registry)?;
+        let folder = Folder::create(&path, plan)?;
         if folder.was_another {
             note!(
                 "note: {} holds runs of another version of this experiment; they stay there, and those \

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::table::file_name;
 use crate::figure::Figure;
 use crate::figure::axis::Axis;
 use crate::figure::marks::{Line, Mark};
@@ -25,8 +26,8 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Lines over one abscissa: each with its name and its points, `[x, y]`. `name`, of letters, digits and `-`, is that
-    /// of the chart's files, `table` that of the table with its data; `axes` are labels with units.
+    /// Lines over one abscissa: each with its name and its points, `[x, y]`. `name` is that of the chart's
+    /// files, on the terms of [`Table::new`](super::Table::new), `table` that of the table with its data; `axes` are labels with units.
     pub fn lines(
         [name, title, caption, table]: [&str; 4],
         axes: [&str; 2],
@@ -41,10 +42,10 @@ impl Chart {
         let y = Axis::linear(&printable(axes[1]), extent(&lines), MARGIN);
         let panel = Panel::new(x, y, lines.into_iter().map(Mark::Line).collect());
         Self {
-            name: name.to_owned(),
+            name: file_name(name),
             title: title.to_owned(),
             caption: caption.to_owned(),
-            table: table.to_owned().into(),
+            table: file_name(table).into(),
             figure: Figure::column(vec![panel], 44.0),
         }
     }

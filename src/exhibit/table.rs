@@ -35,9 +35,10 @@ impl Table {
         Self { is_curve: true, ..Self::of(name, caption, frame) }
     }
 
-    /// A table without columns. Its name, of letters, digits and `-`, is that of its files.
-    pub fn new(name: impl Into<String>, caption: impl Into<String>) -> Self {
-        Self::of(name.into(), caption, DataFrame::empty())
+    /// A table without columns. Its name is that of its files; what is neither a letter of ASCII, a digit nor
+    /// `-` becomes `-`.
+    pub fn new(name: &str, caption: impl Into<String>) -> Self {
+        Self::of(file_name(name), caption, DataFrame::empty())
     }
 
     /// With another column of texts. A column that is not as long as the others, or whose name is
@@ -66,4 +67,10 @@ impl Table {
         }
         self
     }
+}
+
+/// A name that is safe as a file's.
+pub(super) fn file_name(name: &str) -> String {
+    let safe = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+    name.chars().map(safe).collect()
 }

@@ -21,15 +21,15 @@ pub struct Entrant {
     /// where the field has these more than once.
     pub label: String,
     /// The optimiser's name: what it is a kind of.
-    pub kind: String,
+    pub(crate) kind: String,
     /// The name of the optimiser that searches first, of one that has two phases.
-    pub search: Option<String>,
+    pub(crate) search: Option<String>,
     /// All settings; together with the formulation they determine a run.
-    pub settings: Identity,
+    pub(crate) settings: Identity,
     /// The formulation asked for; without it each subject's preferred one.
-    pub formulation: Option<String>,
+    pub(crate) formulation: Option<String>,
     /// Whether it can search only problems with derivatives.
-    pub needs_derivatives: bool,
+    pub(crate) needs_derivatives: bool,
     /// Number of seeds, instead of the experiment's.
     pub seeds: Option<NonZeroU64>,
     /// Evaluations that each of its runs may spend, instead of the experiment's or the instance's
@@ -118,11 +118,21 @@ impl Entrant {
         Self { label: label.to_owned(), is_labelled: true, ..self }
     }
 
+    /// The optimiser's name: what it is a kind of.
+    pub fn kind(&self) -> &str {
+        &self.kind
+    }
+
+    /// Whether it can search only problems with derivatives.
+    pub fn needs_derivatives(&self) -> bool {
+        self.needs_derivatives
+    }
+
     /// The optimiser itself.
     pub fn optimiser(&self) -> Result<&dyn Optimiser, Failure> {
         self.optimiser.as_deref().ok_or_else(|| {
             Failure::new(format!(
-                "the optimiser `{}` is of the program that made these results",
+                "the optimiser `{}` belongs to the program that made these results",
                 self.kind
             ))
         })

@@ -67,7 +67,11 @@ impl EntrantTable {
     pub(super) fn entry(self, document: &Document) -> Result<Entry, InputError> {
         let Self { settings, outside, label, seeds, budget } = self;
         let (entrant, place) = match (settings, outside) {
-            (Some(settings), _) => {
+            (Some(_), Some(outside)) => {
+                let message = "found an optimiser beside `outside`, expected one of them";
+                return Err(document.error_at(outside.span(), message, None));
+            }
+            (Some(settings), None) => {
                 let place = settings.span();
                 (Entrant::from(settings.into_inner()), place)
             }
@@ -210,7 +214,13 @@ fn combinations<'i>(
     }
     if choice.is_empty() {
         if beside.contains_key(OUTSIDE) {
-            return Ok((beside, vec![choice]));
+            return match sweep {
+                None => Ok((beside, vec![choice])),
+                Some(sweep) => {
+                    let message = "found a sweep of an optimiser of another program";
+                    Err(document.error_at(sweep.span(), message, None))
+                }
+            };
         }
         return Err(no_optimiser(span, document));
     }

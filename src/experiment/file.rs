@@ -143,14 +143,14 @@ impl Experiment {
         self
     }
 
-    /// The same experiment with another instance.
+    /// The same experiment with one more instance.
     #[must_use]
     pub fn with_instance(mut self, instance: Instance) -> Self {
         self.instances.push(instance);
         self
     }
 
-    /// The same experiment with another optimiser.
+    /// The same experiment with one more optimiser.
     #[must_use]
     pub fn with_optimiser(mut self, entrant: impl Into<Entrant>) -> Self {
         self.field.push(entrant.into().into());

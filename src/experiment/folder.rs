@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
+
 use super::file::Experiment;
 use super::kind::Registry;
 use super::plan::{Plan, RunSpec};
@@ -37,6 +39,20 @@ pub struct Options {
     pub shard: Option<Shard>,
 }
 
+impl Options {
+    /// The same with so many runs at a time.
+    #[must_use]
+    pub fn with_jobs(self, jobs: usize) -> Self {
+        Self { jobs: Some(jobs), ..self }
+    }
+
+    /// The same for a part of the runs.
+    #[must_use]
+    pub fn with_shard(self, shard: Shard) -> Self {
+        Self { shard: Some(shard), ..self }
+    }
+}
+
 /// A folder that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
@@ -56,6 +72,14 @@ pub enum FolderError {
         /// The experiment wanted.
         expected: String,
     },
+    /// A file that is there and is no experiment would be lost.
+    #[error("{} has no name that can be read, expected the experiment `{expected}`, or no such file", .path.display())]
+    Unnamed {
+        /// The file.
+        path: PathBuf,
+        /// The experiment wanted.
+        expected: String,
+    },
     /// The experiment could not be put into words.
     #[error("cannot write the experiment: {0}")]
     Written(String),
@@ -70,8 +94,8 @@ pub enum FolderError {
 impl Folder {
     /// Keeps a plan's experiment in a folder, made if need be, for its runs to be stored beside it. The folder
     /// may hold runs of the experiment already; those of another version of it stay there.
-    pub fn create(path: &Path, plan: Plan, registry: &Registry) -> Result<Self, FolderError> {
-        check_name(path, &plan.name, registry)?;
+    pub fn create(path: &Path, plan: Plan) -> Result<Self, FolderError> {
+        check_name(path, &plan.name)?;
         let store = Store::open(path)?;
         let (experiment, files) = plan.experiment.clone().kept()?;
         for (name, text) in files {
@@ -125,15 +149,24 @@ impl Folder {
     }
 }
 
-fn check_name(path: &Path, name: &str, registry: &Registry) -> Result<(), FolderError> {
-    let Ok(document) = Document::read(&path.join(EXPERIMENT)) else { return Ok(()) };
-    match Experiment::read(&document, registry) {
-        Ok(before) if before.name() != name => Err(FolderError::Another {
-            path: path.to_owned(),
-            found: before.name().to_owned(),
-            expected: name.to_owned(),
-        }),
-        _ => Ok(()),
+/// Whether a folder has no experiment or one of this name, of whatever kind.
+fn check_name(folder: &Path, name: &str) -> Result<(), FolderError> {
+    #[derive(Deserialize)]
+    struct Named {
+        name: String,
+    }
+    let path = folder.join(EXPERIMENT);
+    if !path.exists() {
+        return Ok(());
+    }
+    let expected = name.to_owned();
+    let text = std::fs::read_to_string(&path).unwrap_or_default();
+    match toml::from_str::<Named>(&text) {
+        Ok(Named { name: found }) if found == name => Ok(()),
+        Ok(Named { name: found }) => {
+            Err(FolderError::Another { path: folder.to_owned(), found, expected })
+        }
+        Err(_) => Err(FolderError::Unnamed { path, expected }),
     }
 }
 

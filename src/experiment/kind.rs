@@ -31,7 +31,7 @@ pub trait Source: fmt::Debug + Send + Sync {
     /// The keys as a TOML file has them, with every default filled in; or what went wrong.
     fn written(&self) -> Result<String, String>;
 
-    /// Where in the file it sets budgets of its own, if it does.
+    /// Whether it sets budgets of its own.
     fn sets_budgets(&self) -> bool {
         false
     }
@@ -70,16 +70,11 @@ impl Registry {
         Self::default()
     }
 
-    /// With another kind.
+    /// With one more kind.
     #[must_use]
     pub fn with(mut self, kind: Arc<dyn Kind>) -> Self {
         self.kinds.push(kind);
         self
-    }
-
-    /// Whether a kind of this name is known.
-    pub fn knows(&self, name: &str) -> bool {
-        self.kinds.iter().any(|kind| kind.name() == name)
     }
 
     /// All keys of experiment files that are some kind's.
@@ -87,7 +82,7 @@ impl Registry {
         self.kinds.iter().flat_map(|kind| kind.keys().iter().copied())
     }
 
-    /// The kind whose keys a file has. Of two the file's is the one that is not the first.
+    /// The kind whose keys a file has, or the first; keys of two kinds are an error.
     pub(super) fn kind_of(&self, document: &Document) -> Result<Option<&dyn Kind>, InputError> {
         let has = |kind: &Arc<dyn Kind>| -> Result<Option<&'static str>, InputError> {
             for key in kind.keys() {

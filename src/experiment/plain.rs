@@ -6,6 +6,9 @@ use super::identity::Identity;
 use super::subject::{Instance, Subject};
 use crate::search::{Failure, Problem};
 
+/// The kind of such subjects, which show nothing of their own.
+pub(super) const PLAIN: &str = "problem";
+
 /// A problem of somebody's own in its own variables.
 struct Plain {
     name: String,
@@ -24,7 +27,7 @@ impl Instance {
 
 impl Subject for Plain {
     fn kind(&self) -> &'static str {
-        "problem"
+        PLAIN
     }
 
     fn name(&self) -> &str {

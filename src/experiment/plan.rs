@@ -9,10 +9,10 @@ use super::entrant::Entrant;
 use super::field::{Entry, labelled};
 use super::file::Experiment;
 use super::run::Run;
-use super::schema::FORMAT;
+use super::schema::{FORMAT, runs};
 use super::subject::{Instance, Results};
 use super::targets::TargetTable;
-use super::value::Quantity;
+use super::value::{Quantity, ValueKind};
 use crate::digest::digest;
 use crate::input::{Document, InputError};
 
@@ -95,6 +95,7 @@ impl Experiment {
             return Err(document.error_at(self.field_place.clone(), message, None));
         }
         check_instances(&instances, document)?;
+        check_quantities(&instances, document)?;
         self.check_labels(&optimisers)?;
         Ok(self.spelt_out(instances, optimisers, runs))
     }
@@ -119,7 +120,7 @@ impl Experiment {
         let sets_budgets = self.source.as_ref().is_some_and(|source| source.sets_budgets());
         match own.filter(|_| sets_budgets) {
             Some(place) => {
-                let message = "found a budget of an optimiser's own beside a sweep of budgets, expected one of them";
+                let message = "found an optimiser with a budget of its own beside a sweep of budgets, expected one of them";
                 Err(self.document.error_at(place, message, None))
             }
             None => Ok(()),
@@ -156,6 +157,28 @@ fn check_instances(instances: &[Instance], document: &Document) -> Result<(), In
         }
         None => Ok(()),
     }
+}
+
+/// Whether facts and measures have columns of their own, and one kind of values each.
+fn check_quantities(instances: &[Instance], document: &Document) -> Result<(), InputError> {
+    let error = |message: String| Err(document.error_at(0..0, message, None));
+    let mut known: HashMap<String, ValueKind> = HashMap::new();
+    for Instance { subject, .. } in instances {
+        let facts = subject.facts().into_iter().map(|(fact, _)| fact);
+        for Quantity { name, kind, .. } in facts.chain(subject.measures()) {
+            if runs::COLUMNS.iter().any(|column| column.name == name) {
+                return error(format!(
+                    "found a quantity `{name}`, expected a name that no column of `runs` has"
+                ));
+            }
+            if known.insert(name.clone(), kind).is_some_and(|before| before != kind) {
+                return error(format!(
+                    "found the quantity `{name}` with two kinds of values, expected one"
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Whether an optimiser can search every instance: whether it has the formulation asked for and, where need be,

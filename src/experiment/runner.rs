@@ -7,7 +7,9 @@ use super::caught::caught;
 use super::plan::{Plan, RunSpec};
 use super::record::{Ended, Record, Status};
 use super::store::{Store, StoreError};
-use crate::search::{Failure, Oracle, Rng, Watch};
+use super::subject::Subject;
+use super::value::Judgement;
+use crate::search::{Failure, Oracle, Rng, Stop, Watch};
 
 /// Told of every run that ends.
 pub trait Progress: Sync {
@@ -21,7 +23,7 @@ impl Progress for () {
 }
 
 /// Runs that together are allowed fewer evaluations than this are stored as one batch.
-const EVALUATIONS_A_BATCH: u64 = 500;
+const EVALUATIONS_PER_BATCH: u64 = 500;
 /// After so many batches the store is tidied.
 const BATCHES_TO_TIDY: usize = 1_000;
 /// What is done waits no longer to be stored, however few evaluations it took.
@@ -70,8 +72,8 @@ fn batches<'a>(mut runs: &'a [&'a RunSpec]) -> Vec<&'a [&'a RunSpec]> {
     while !runs.is_empty() {
         let mut sum = 0_u64;
         let short = runs.iter().position(|run| {
-            let is_long = run.budget >= EVALUATIONS_A_BATCH;
-            let is_full = sum >= EVALUATIONS_A_BATCH;
+            let is_long = run.budget >= EVALUATIONS_PER_BATCH;
+            let is_full = sum >= EVALUATIONS_PER_BATCH;
             sum = sum.saturating_add(run.budget);
             is_long || is_full
         });
@@ -124,6 +126,18 @@ pub enum RunError {
     Threads(String),
 }
 
+/// What the subject says of a point, complete.
+fn judge(subject: &dyn Subject, space: &str, x: &[f64]) -> Result<Option<Judgement>, Failure> {
+    let judgement = subject.judge(space, x)?;
+    let expected = subject.measures().len();
+    match judgement.as_ref().map(|judgement| judgement.measures.len()) {
+        Some(found) if found != expected => Err(Failure::new(format!(
+            "found {found} values in a judgement, expected {expected}, one per measure"
+        ))),
+        _ => Ok(judgement),
+    }
+}
+
 /// One run, unless it is interrupted.
 fn one(
     plan: &Plan,
@@ -141,8 +155,12 @@ fn one(
     let started = Instant::now();
     let mut outcome = caught(|| optimiser.minimise(&mut oracle, &mut Rng::new(run.seed)));
     let seconds = started.elapsed();
+    if matches!(outcome, Ok(Err(Stop::Interrupted))) {
+        return Ok(None);
+    }
     let best = oracle.best();
-    let judged = caught(|| best.map_or(Ok(None), |b| instance.subject.judge(&space, &b.x)));
+    let judged =
+        caught(|| best.map_or(Ok(None), |best| judge(&*instance.subject, &space, &best.x)));
     let (judgement, is_unjudged) = match judged {
         Ok(Ok(judgement)) => (judgement, false),
         Ok(Err(error)) => {

@@ -50,7 +50,7 @@ pub struct Tally {
 impl Tally {
     /// Not yet stored.
     pub fn missing(self) -> usize {
-        self.planned - self.stored
+        self.planned.saturating_sub(self.stored)
     }
 }
 

@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::budget::BudgetTable;
 use super::identity::Identity;
-use super::subject::{Instance, Results, Subject};
+use super::plain::PLAIN;
+use super::subject::{Coordinate, Instance, Results, Subject};
 use super::value::{Quantity, Value};
 use crate::exhibit::{Exhibits, Finding};
 use crate::input::{Document, Finite, InputError};
@@ -36,6 +38,10 @@ pub(super) struct ProblemTable {
     spaces: Vec<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     targets: Vec<Finite>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    budget: Option<BudgetTable>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    coordinates: Vec<Coordinate>,
     /// JSON.
     identity: toml::Spanned<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -58,7 +64,7 @@ fn letter() -> String {
 impl ProblemTable {
     /// What of an instance its results need to be read.
     pub(super) fn of(instance: &Instance) -> Self {
-        let Instance { label, group, title, subject, targets, .. } = instance;
+        let Instance { label, group, title, subject, targets, budget, coordinates } = instance;
         let finite = |values: &[f64]| values.iter().copied().map(Finite).collect();
         let facts = subject.facts().into_iter().filter(|(_, value)| *value != Value::None);
         Self {
@@ -74,6 +80,8 @@ impl ProblemTable {
             symbol: subject.cost_symbol().to_owned(),
             spaces: subject.spaces(),
             targets: finite(targets),
+            budget: budget.map(|evaluations| BudgetTable { evaluations }),
+            coordinates: coordinates.clone(),
             identity: toml::Spanned::new(0..0, subject.identity().to_string()),
             facts: facts.map(|(quantity, value)| FactTable { quantity, value }).collect(),
             measures: subject.measures(),
@@ -90,7 +98,14 @@ impl ProblemTable {
         let title = self.title.clone().unwrap_or_else(|| group.clone());
         let targets: Vec<f64> = self.targets.iter().map(|target| target.0).collect();
         let subject = Arc::new(Stored { identity, table: self.clone() });
-        Ok(Instance { group, title, targets, ..Instance::new(&*self.label, subject) })
+        Ok(Instance {
+            group,
+            title,
+            targets,
+            budget: self.budget.map(|budget| budget.evaluations),
+            coordinates: self.coordinates.clone(),
+            ..Instance::new(&*self.label, subject)
+        })
     }
 }
 
@@ -120,7 +135,7 @@ impl Subject for Stored {
 
     fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Failure> {
         Err(Failure::new(format!(
-            "the problem `{}` is of the program that made these results",
+            "the problem `{}` belongs to the program that made these results",
             self.table.name
         )))
     }
@@ -155,9 +170,12 @@ impl Subject for Stored {
     }
 
     fn exhibits(&self, _: &Results<'_>) -> Exhibits {
+        if self.table.kind == PLAIN {
+            return Exhibits::default();
+        }
         let left_out = format!(
-            "What subjects of the kind `{}` show of their own, if anything, is left out: this program does not know the \
-             kind.",
+            "What subjects of the kind `{}` show of their own is left out: only the program that made these results has \
+             it.",
             self.table.kind
         );
         let finding = Finding::new("Is anything left out?", left_out.clone());

@@ -5,6 +5,8 @@ use std::fmt;
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::caught::caught;
 use super::identity::Identity;
 use super::run::{Run, best_run};
@@ -149,7 +151,8 @@ pub struct Instance {
 }
 
 /// A setting and its value on one instance.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Coordinate {
     /// The setting.
     pub setting: String,

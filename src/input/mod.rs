@@ -122,7 +122,7 @@ impl Document {
 
     /// Like [`parse_over`](Self::parse_over); the tree of keys and values is changed by `reshape` before
     /// it is parsed.
-    pub fn parse_reshaped<T: DeserializeOwned>(
+    pub(crate) fn parse_reshaped<T: DeserializeOwned>(
         &self,
         defaults: &[&str],
         reshape: impl FnOnce(&mut DeTable<'_>) -> Result<(), InputError>,
@@ -171,7 +171,7 @@ impl Document {
 }
 
 /// Leaves some keys of a table.
-pub fn keep(table: &mut DeTable<'_>, keys: &[&str]) {
+pub(crate) fn keep(table: &mut DeTable<'_>, keys: &[&str]) {
     let others: Vec<_> = table.keys().map(|key| key.get_ref().clone()).collect();
     for key in others.iter().filter(|key| !keys.contains(&key.as_ref())) {
         table.remove(key.as_ref());

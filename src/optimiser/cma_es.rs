@@ -28,14 +28,14 @@ pub struct CmaEs {
     /// variables in which a problem with several formulations is searched; without it the problem's first
     #[serde(skip_serializing_if = "Option::is_none")]
     pub formulation: Option<String>,
-    /// points a generation at first, `λ`, at least four; without it 4 + ⌊3 ln n⌋ for n variables
+    /// points per generation at first, `λ`, at least four; without it 4 + ⌊3 ln n⌋ for n variables
     #[serde(deserialize_with = "optional_count::<4, LARGEST, _, _>")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub population: Option<NonZeroUsize>,
     /// standard deviation at first, `σ`, as a fraction of the box's width
     #[serde(deserialize_with = "share")]
     pub step: f64,
-    /// a restart has so many times the points a generation
+    /// a restart has so many times the points per generation
     #[serde(deserialize_with = "count::<100, _, _>")]
     pub growth: NonZeroU32,
     /// restart when costs have differed by less than this for some generations

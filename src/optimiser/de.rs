@@ -45,7 +45,7 @@ impl Default for De {
 impl Optimiser for De {
     fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
         let variables = oracle.bounds().len();
-        let count = self.population.map_or((10 * variables).max(4), NonZeroUsize::get);
+        let count = self.population.map_or(10 * variables, NonZeroUsize::get).max(4);
         let mut population = Population::scatter(count, oracle, rng)?;
         loop {
             let mut trials = population.points.clone();

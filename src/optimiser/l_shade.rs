@@ -57,7 +57,7 @@ const SMALLEST: usize = 4;
 impl Optimiser for LShade {
     fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
         let (variables, budget) = (oracle.bounds().len(), oracle.remaining());
-        let count = self.population.map_or((18 * variables).max(SMALLEST), NonZeroUsize::get);
+        let count = self.population.map_or(18 * variables, NonZeroUsize::get).max(SMALLEST);
         let mut population = Population::scatter(count, oracle, rng)?;
         let mut archive = Vec::new();
         let mut memory = Memory::new(self.memory.get());

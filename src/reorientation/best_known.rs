@@ -138,7 +138,7 @@ impl fmt::Display for BestKnown {
 }
 
 /// What the least cost of a task over a family follows from: the first 16 hexadecimal digits of the SHA-256 of a JSON text with sorted
-/// keys, numbers rounded to nine significant digits, of [`Robot::identity`](crate::robot::Robot::identity),
+/// keys, numbers rounded to nine significant digits, of the robot's joints and bodies at zero positions,
 /// the joints' positions at both ends, the turn of the base from start to goal, the limits, `K_b` and the number of terms.
 ///
 /// Boxes and accuracies are those of a search, not of the task.

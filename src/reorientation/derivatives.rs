@@ -1,4 +1,4 @@
-//! First derivatives of the time-free cost, for optimisers that use them.
+//! First and second derivatives of the time-free cost, for optimisers that use them.
 
 use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 

@@ -8,38 +8,34 @@ const K_Q_DEG: f64 = 1.0;
 /// `k_v = k_a = k_j`, the relative excess over a limit that counts as one (eq. 33).
 const K_EXCESS: f64 = 0.01;
 
-/// `J = K_b ‖δq_b‖ / k_q + K_t t_f + (F_v + F_a + F_j) / 0.01`, a norm, a maximum and a hinge, by what
-/// each weighs.
+/// `J = K_b ‖δq_b‖ / k_q + K_t t_f + (F_v + F_a + F_j) / 0.01`, a norm, a maximum and a
+/// hinge of weight one; what the others weigh.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Terms {
     error: f64,
     duration: f64,
-    /// Of excesses in the unit that counts as one.
-    excess: f64,
 }
 
 impl Terms {
     /// With `K_b`; `K_t` is the rest of one.
     pub(super) fn new(base_weight: f64) -> Self {
         let k_q = (K_Q_DEG.to_radians() / 2.0).sin();
-        Self { error: base_weight / k_q, duration: 1.0 - base_weight, excess: 1.0 }
+        Self { error: base_weight / k_q, duration: 1.0 - base_weight }
     }
 
     /// `J` of a motion: `‖δq_b‖`, its duration \[s\] and its excess over the limits.
     pub(super) fn cost(&self, error: f64, duration: f64, excess: &[f64; 3]) -> f64 {
-        self.error * error + self.duration * duration + self.excess * penalty(excess)
+        self.error * error + self.duration * duration + penalty(excess)
     }
 
     /// The terms over smooth pieces: the components of the error, and the duration \[s\] that each limit
     /// asks for.
     pub(super) fn time_free(&self, error: Vec<Piece>, durations: Vec<Piece>) -> Linearisation {
         // Such a duration leaves no excess.
-        let Self { error: error_weight, duration: duration_weight, excess: _ } = *self;
-        let terms = vec![
-            Term::norm(error_weight, error),
-            Term::max(duration_weight, durations).at_least(0.0),
-        ];
-        Linearisation { terms }
+        Linearisation::new(vec![
+            Term::norm(self.error, error),
+            Term::max(self.duration, durations).at_least(0.0),
+        ])
     }
 }
 

@@ -23,8 +23,16 @@ impl Body {
         2.0 * moments.max() > moments.sum() * (1.0 + 1e-9)
     }
 
-    pub(super) fn is_finite(&self) -> bool {
-        self.mass >= 0.0 && self.mass.is_finite() && self.inertia.iter().all(|i| i.is_finite())
+    /// Whether mass and inertia are finite, the mass is not negative, and the inertia is symmetric without a
+    /// negative moment, to rounding.
+    pub(super) fn is_sound(&self) -> bool {
+        let Self { mass, inertia } = self;
+        if !(*mass >= 0.0 && mass.is_finite() && inertia.iter().all(|i| i.is_finite())) {
+            return false;
+        }
+        let least = -1e-9 * inertia.norm();
+        (inertia - inertia.transpose()).norm() <= -least
+            && inertia.symmetric_eigenvalues().min() >= least
     }
 }
 

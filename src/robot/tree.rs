@@ -43,21 +43,24 @@ pub struct MovingJoint<'a> {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RobotError {
     /// A parent that is not among the links before.
-    #[error("link {link} hangs on link {parent}, which does not come before it")]
+    #[error("link {link} has the parent {parent}, which does not come before it")]
     Parent {
         /// Index of the link.
         link: usize,
         /// Index of its parent.
         parent: usize,
     },
-    /// A tool on a link that there is not.
-    #[error("the tool is on link {0}, which there is not")]
+    /// A tool on a link that does not exist.
+    #[error("the tool is on link {0}, which does not exist")]
     Tool(usize),
-    /// NaN, an infinite number or a negative mass.
-    #[error("link {0} has a number that is not finite, a negative mass or an empty range")]
+    /// NaN, an infinite number, a negative mass, an inertia that is not symmetric or has a negative moment, or an empty
+    /// range.
+    #[error(
+        "link {0} has a number that is not finite, a negative mass, an inertia that no body has or an empty range"
+    )]
     Link(usize),
     /// A base without mass, or with NaN or an infinite number.
-    #[error("the base has a number that is not finite, or no mass")]
+    #[error("the base has a number that is not finite, no mass or an inertia that no body has")]
     Base,
     /// Nothing to move.
     #[error("no joint moves")]
@@ -85,7 +88,7 @@ struct Source {
 impl Robot {
     /// From links of which each comes after its parent.
     pub fn new(name: String, base: Body, links: Vec<Link>, tool: Tool) -> Result<Self, RobotError> {
-        if !(base.is_finite() && base.mass > 0.0) {
+        if !(base.is_sound() && base.mass > 0.0) {
             return Err(RobotError::Base);
         }
         for (i, link) in links.iter().enumerate() {
@@ -94,12 +97,15 @@ impl Robot {
             }
             let axis_is_sound = link.joint.axis().is_none_or(|axis| {
                 let [low, high] = axis.range;
-                axis.direction.iter().all(|entry| entry.is_finite()) && low < high
+                axis.direction.iter().all(|entry| entry.is_finite())
+                    && low.is_finite()
+                    && high.is_finite()
+                    && low < high
             });
             let place_is_finite = link.centre_of_mass.iter().all(|entry| entry.is_finite());
             if !(axis_is_sound
                 && place_is_finite
-                && link.body.is_finite()
+                && link.body.is_sound()
                 && link.placement.is_finite())
             {
                 return Err(RobotError::Link(i));

@@ -83,7 +83,7 @@
 //!     fn linearise(&self, x: &[f64]) -> Result<Linearisation, Failure> {
 //!         let sum = Piece::new(0, x[0] + x[1], [1.0, 1.0]);
 //!         let circle = Piece::new(0, x[0] * x[0] + x[1] * x[1] - 2.0, [2.0 * x[0], 2.0 * x[1]]);
-//!         Ok(Linearisation { terms: vec![Term::max(1.0, vec![sum]), Term::norm(10.0, vec![circle])] })
+//!         Ok(Linearisation::new(vec![Term::max(1.0, vec![sum]), Term::norm(10.0, vec![circle])]))
 //!     }
 //!
 //!     fn curvature(&self, _: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure> {
@@ -100,6 +100,7 @@
 //! assert!((oracle.best().unwrap().evaluation.cost + 2.0).abs() < 1e-8);
 //! ```
 
+mod evaluation;
 mod failure;
 mod oracle;
 mod points;
@@ -107,9 +108,10 @@ mod problem;
 mod rng;
 mod terms;
 
+pub use evaluation::Evaluation;
 pub use failure::Failure;
 pub use oracle::{Best, Oracle, Stop, TracePoint, Watch};
 pub use points::{Bounds, BoundsError, Points, PointsIter, PointsIterMut};
-pub use problem::{Composite, Evaluation, Problem};
+pub use problem::{Composite, Problem};
 pub use rng::Rng;
 pub use terms::{Linearisation, Multipliers, Piece, PieceId, Shape, Term};

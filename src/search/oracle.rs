@@ -5,10 +5,11 @@ use std::time::{Duration, Instant};
 
 use nalgebra::DMatrix;
 
+use super::evaluation::Evaluation;
 use super::failure::Failure;
 use super::points::{Bounds, Points};
-use super::problem::{Composite, Evaluation, Problem};
-use super::terms::{Linearisation, Multipliers};
+use super::problem::{Composite, Problem};
+use super::terms::{Linearisation, Multipliers, Shape};
 
 /// Why an optimiser has to stop.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -90,6 +91,8 @@ pub struct Oracle<'a> {
     conic_solves: u64,
     conic_failures: u64,
     first_feasible: Option<u64>,
+    /// Weights and shapes of the cost's terms, once they are known.
+    form: Option<Vec<(f64, Shape)>>,
     best: Option<Best>,
     /// The best of the search that is [`within`](Self::within).
     best_within: Option<Best>,
@@ -111,6 +114,7 @@ impl<'a> Oracle<'a> {
             conic_solves: 0,
             conic_failures: 0,
             first_feasible: None,
+            form: None,
             best: None,
             best_within: None,
             trace: Vec::new(),
@@ -222,14 +226,16 @@ impl<'a> Oracle<'a> {
     }
 
     /// Evaluates one point together with its first derivatives: one evaluation and one linearisation. A
-    /// gradient of another length than the point's, or a weight that is negative or not finite, is a failure.
+    /// gradient of another length than the point's, a weight that is negative or not finite, two pieces of a
+    /// term with one id, or terms of another form than at the first point, is a failure.
     pub fn linearise(&mut self, x: &[f64]) -> Result<Linearisation, Stop> {
         let composite = self.composite(x)?;
         self.begin();
         self.linearisations += 1;
         let linearisation = self.timed(|| composite.linearise(x))?;
-        linearisation.check(x.len())?;
-        self.record(x, linearisation.cost().into());
+        let form = self.form.get_or_insert_with(|| linearisation.form());
+        linearisation.check(x.len(), form)?;
+        self.record(x, linearisation.evaluation());
         Ok(linearisation)
     }
 
@@ -267,14 +273,20 @@ impl<'a> Oracle<'a> {
         evaluations: u64,
         search: impl FnOnce(&mut Self) -> Result<(), Stop>,
     ) -> Result<Option<Best>, Stop> {
-        let budget = self.budget;
+        let (budget, outer) = (self.budget, self.best_within.take());
         self.budget = budget.min(self.evaluations.saturating_add(evaluations));
-        self.best_within = None;
         let outcome = search(self);
         self.budget = budget;
+        let own = std::mem::replace(&mut self.best_within, outer);
+        if let Some(own) = &own {
+            let is_better = |best: &Best| own.evaluation.cost < best.evaluation.cost;
+            if self.best_within.as_ref().is_none_or(is_better) {
+                self.best_within = Some(own.clone());
+            }
+        }
         match outcome {
             Err(stop) if stop != Stop::BudgetSpent || self.remaining() == 0 => Err(stop),
-            _ => Ok(self.best_within.take()),
+            _ => Ok(own),
         }
     }
 

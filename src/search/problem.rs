@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use super::evaluation::Evaluation;
 use super::failure::Failure;
 use super::points::{Bounds, Points};
 use super::terms::{Linearisation, Multipliers};
@@ -48,27 +49,4 @@ pub trait Composite: Problem {
     /// Second derivative of `Σ_k Σ_i λ_ki v_ki` at `x`, `n × n` for `n` variables and symmetric, to a few digits;
     /// the pieces are ones that [`linearise`](Self::linearise) named there.
     fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure>;
-}
-
-/// What one evaluation says.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Evaluation {
-    /// The cost to be made small. One that is infinite or NaN is never best.
-    pub cost: f64,
-    /// How far outside its limits the point is, zero when inside.
-    pub violation: f64,
-}
-
-impl Evaluation {
-    /// A cost, and by how much limits are violated.
-    pub fn new(cost: f64, violation: f64) -> Self {
-        Self { cost, violation }
-    }
-}
-
-/// A cost within all limits.
-impl From<f64> for Evaluation {
-    fn from(cost: f64) -> Self {
-        Self::new(cost, 0.0)
-    }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::evaluation::Evaluation;
 use super::failure::Failure;
 
 /// A convex function `φ` of the values `v` of a term's pieces.
@@ -151,19 +152,44 @@ impl Term {
 
 /// The terms of a cost at a point.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Linearisation {
     /// As many at every point, in the same order, with the same weights and shapes.
     pub terms: Vec<Term>,
+    /// By how much the point breaks the problem's limits, as in [`Evaluation`].
+    pub violation: f64,
 }
 
 impl Linearisation {
+    /// At a point within all limits.
+    pub fn new(terms: Vec<Term>) -> Self {
+        Self { terms, violation: 0.0 }
+    }
+
+    /// The same at a point that breaks limits by so much.
+    #[must_use]
+    pub fn with_violation(self, violation: f64) -> Self {
+        Self { violation, ..self }
+    }
+
+    /// Cost and violation.
+    pub fn evaluation(&self) -> Evaluation {
+        Evaluation { cost: self.cost(), violation: self.violation }
+    }
+
     /// `J`.
     pub fn cost(&self) -> f64 {
         self.terms.iter().map(Term::cost).sum()
     }
 
-    /// Whether weights are sound and every gradient has so many components.
-    pub(super) fn check(&self, variables: usize) -> Result<(), Failure> {
+    /// The weight and shape of every term.
+    pub(super) fn form(&self) -> Vec<(f64, Shape)> {
+        self.terms.iter().map(|term| (term.weight, term.shape)).collect()
+    }
+
+    /// Whether the terms have the form that they had at another point, weights are sound, pieces of a term have
+    /// different ids, and every gradient has so many components.
+    pub(super) fn check(&self, variables: usize, form: &[(f64, Shape)]) -> Result<(), Failure> {
         for (k, term) in self.terms.iter().enumerate() {
             let weight = term.weight;
             if !(weight.is_finite() && weight >= 0.0) {
@@ -175,6 +201,19 @@ impl Linearisation {
                 let place = format!("in term {k}, expected {variables}");
                 return Err(format!("found a gradient of {found} components {place}").into());
             }
+            let mut ids: Vec<_> = term.pieces.iter().map(|piece| piece.id).collect();
+            ids.sort_by(|a, b| a.track.cmp(&b.track).then(a.place.total_cmp(&b.place)));
+            if let Some(twin) = ids.windows(2).find(|pair| pair[0] == pair[1]) {
+                let PieceId { track, place } = twin[0];
+                return Err(format!(
+                    "found two pieces of term {k} on track {track} at {place}, expected different ids"
+                )
+                .into());
+            }
+        }
+        if self.form() != form {
+            let reason = "found other weights or shapes of terms than at the point before";
+            return Err(Failure::new(reason));
         }
         Ok(())
     }
@@ -226,8 +265,10 @@ mod tests {
 
     #[test]
     fn misshapen_linearisations_are_refused() {
-        let told =
-            |term: Term| Linearisation { terms: vec![term] }.check(2).map_err(|f| f.to_string());
+        let told = |term: Term| {
+            let found = Linearisation::new(vec![term]);
+            found.check(2, &found.form()).map_err(|f| f.to_string())
+        };
         let piece = || Piece::new(0, 1.0, [1.0, 2.0]);
         assert_eq!(told(Term::max(1.0, vec![piece()])), Ok(()));
         let message = "found a gradient of 3 components in term 0, expected 2";
@@ -235,5 +276,10 @@ mod tests {
         assert_eq!(told(Term::max(1.0, vec![piece(), long])), Err(message.to_owned()));
         let message = "found the weight -1 of term 0, expected a finite weight of zero or more";
         assert_eq!(told(Term::hinge(-1.0, vec![])), Err(message.to_owned()));
+        let message = "found two pieces of term 0 on track 0 at 0, expected different ids";
+        assert_eq!(told(Term::max(1.0, vec![piece(), piece()])), Err(message.to_owned()));
+        let message = "found other weights or shapes of terms than at the point before";
+        let found = Linearisation::new(vec![Term::max(1.0, vec![piece()])]).check(2, &[]);
+        assert_eq!(found.map_err(|f| f.to_string()), Err(message.to_owned()));
     }
 }

@@ -20,7 +20,7 @@ impl SinePolynomial {
     ///
     /// Panics when the three lists differ in length, or without a term.
     pub fn new(ranges: &[[f64; 2]], start: &[f64], goal: &[f64], terms: usize) -> Self {
-        assert!(ranges.len() == start.len() && start.len() == goal.len(), "one of each a joint");
+        assert!(ranges.len() == start.len() && start.len() == goal.len(), "one of each per joint");
         assert!(terms > 0, "at least one term");
         let spans = ranges
             .iter()

@@ -46,7 +46,7 @@ pub enum StoreError {
     #[error(transparent)]
     File(#[from] FileError),
     /// A table is damaged.
-    #[error("cannot read {}; without this file its runs are done again", .path.display())]
+    #[error("cannot read {}; delete it to do its runs again", .path.display())]
     Damaged {
         /// The table.
         path: PathBuf,

@@ -51,7 +51,7 @@ impl Store {
             if new.len() < count {
                 frame = only(&frame, |key| new.contains(key))?;
             }
-            visitor(&frame)?;
+            visitor(&frame).map_err(damaged(self.path(table, batch)))?;
             seen.extend(new);
             Ok(())
         })
@@ -201,10 +201,7 @@ impl Store {
                 .read_parallel(ParallelStrategy::None)
                 .finish()
         };
-        File::open(&path)
-            .map_err(PolarsError::from)
-            .and_then(read)
-            .map_err(damaged(path))
+        File::open(&path).map_err(PolarsError::from).and_then(read).map_err(damaged(path))
     }
 }
 

@@ -181,7 +181,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let start_cost = here.cost();
         here.cap = 0.0;
         let first_weight = settings.first_weight * here.cost();
-        // Without other terms there is nothing to compare the norms with.
+        // Without other terms that are positive there is nothing to compare the norms with.
         here.cap = if first_weight > 0.0 { first_weight } else { f64::INFINITY };
         Ok(Self {
             settings,

@@ -266,7 +266,7 @@ fn default_findings(width: Width) -> Vec<Finding> {
         instance.subject = Arc::new(subject);
     }
     let folder = tempfile::tempdir().unwrap();
-    let folder = Folder::create(folder.path(), plan, &registry()).unwrap();
+    let folder = Folder::create(folder.path(), plan).unwrap();
     folder.run(Options::default(), &Watch::default(), &Quiet).unwrap();
     findings(&folder.plan, &load(&folder.plan, &folder.store).unwrap())
 }
