@@ -48,8 +48,8 @@ fn a_race_is_run_and_reported() {
 }
 
 /// Kills an example while it runs, has it go on, and reads its results with the command, which knows neither its
-/// optimiser nor its problem.
-fn survives(name: &str, runs: usize, label: &str) {
+/// optimiser nor its problem. So many of the runs it can do itself.
+fn survives(name: &str, runs: usize, possible: usize, label: &str) {
     let folder = tempfile::tempdir().unwrap();
     let results = folder.path().join("results");
     let path = results.to_str().unwrap();
@@ -97,16 +97,30 @@ fn survives(name: &str, runs: usize, label: &str) {
         !refused.status.success() && said.contains("program that made these results"),
         "{said}"
     );
+    let done = |folder: &Path| {
+        let status = text(&driftless(&["status", "--json", folder.to_str().unwrap()]));
+        serde_json::from_str::<serde_json::Value>(&status).unwrap()["stored"].as_u64().unwrap()
+    };
+    assert_eq!(if elsewhere.exists() { done(&elsewhere) } else { 0 }, possible as u64);
+
+    // Nothing is deleted or rewritten that the command could not do again.
+    let kept = fs::read(results.join("experiment.toml")).unwrap();
+    if possible == 0 {
+        assert!(!driftless(&["run", experiment, "--out", path, "--budget", "7"]).status.success());
+    }
+    text(&driftless(&["run", experiment, "--out", path, "--fresh"]));
+    assert_eq!(done(&results), runs as u64);
+    assert_eq!(fs::read(results.join("experiment.toml")).unwrap(), kept);
 }
 
 /// Five optimisers of the default experiment and one's own, five seeds each.
 #[test]
 fn an_optimiser_of_ones_own_is_run_killed_resumed_and_reported() {
-    survives("own_optimiser", 30, "hill-climb");
+    survives("own_optimiser", 30, 25, "hill-climb");
 }
 
 /// Three optimisers, fifteen seeds each.
 #[test]
 fn a_problem_of_ones_own_is_run_killed_resumed_and_reported() {
-    survives("own_problem", 45, "springs");
+    survives("own_problem", 45, 0, "springs");
 }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::results::{ResultsFolder, no_results};
-use crate::experiment::{Plan, Run, load};
+use crate::experiment::{Plan, Run, load, standing};
 use crate::export::{Suite, SuiteFormat, write_suite};
 use crate::reorientation::{MotionFormat, TaskSubject, write_motions};
 
@@ -42,7 +42,10 @@ impl Export {
         let folder = self.results.open()?;
         let (plan, runs) = (&folder.plan, load(&folder.plan, &folder.store)?);
         if runs.is_empty() {
-            return Err(no_results(folder.path(), "none of its experiment's runs"));
+            return Err(match standing(plan, &folder.store)?.unread() {
+                Some(message) => CliError::Usage { message, help: None },
+                None => no_results(folder.path(), "none of its experiment's runs"),
+            });
         }
         if runs.len() < plan.runs.len() {
             note!("note: {} of {} runs are stored so far", runs.len(), plan.runs.len());

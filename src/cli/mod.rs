@@ -176,10 +176,12 @@ impl From<crate::experiment::FolderError> for CliError {
             FolderError::NoResults(_) => {
                 Self::Usage { message: error.to_string(), help: Some(results::HELP.to_owned()) }
             }
-            FolderError::Another { .. } | FolderError::Unnamed { .. } => Self::Usage {
-                message: error.to_string(),
-                help: Some("choose another folder with --out".to_owned()),
-            },
+            FolderError::Another { .. } | FolderError::Unnamed { .. } | FolderError::Own(_) => {
+                Self::Usage {
+                    message: error.to_string(),
+                    help: Some("choose another folder with --out".to_owned()),
+                }
+            }
             FolderError::Written(message) => Self::Resolved(message),
         }
     }

@@ -10,7 +10,8 @@ use super::report::report;
 use super::warnings::warn_of_subjects;
 use super::{CliError, read_or, watch};
 use crate::experiment::{
-    Experiment, Folder, Options, Plan, Progress, Record, RunSpec, Shard, ShardChoice,
+    Experiment, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard, ShardChoice,
+    Store,
 };
 use crate::registry::registry;
 
@@ -89,6 +90,7 @@ impl Run {
         let plan = experiment.plan()?;
         warn_of_subjects(&plan);
         let path = self.out.clone().unwrap_or_else(|| Path::new("results").join(&plan.name));
+        check_possible(&plan, &path)?;
         let folder = Folder::create(&path, plan)?;
         if folder.was_another {
             note!(
@@ -118,7 +120,8 @@ impl Run {
     fn run_missing(&self, folder: &Folder, shard: Option<Shard>) -> Result<(), CliError> {
         let (watch, mine, store) = (watch(), folder.runs(shard), &folder.store);
         if self.fresh {
-            store.remove(&mine.iter().map(|run| run.key.as_str()).collect())?;
+            let own = mine.iter().filter(|run| folder.plan.is_foreign(run).is_none());
+            store.remove(&own.map(|run| run.key.as_str()).collect())?;
         }
         let stored = store.keys()?;
         let missing = mine.iter().filter(|run| !stored.contains(&run.key));
@@ -143,6 +146,22 @@ impl Run {
             )));
         }
         Ok(())
+    }
+}
+
+/// Whether this program can do any of what is missing, before anything is written.
+fn check_possible(plan: &Plan, path: &Path) -> Result<(), CliError> {
+    if plan.runs.iter().all(|run| plan.is_foreign(run).is_none()) {
+        return Ok(());
+    }
+    let stored = Store::existing(path).keys()?;
+    let mut missing = plan.runs.iter().filter(|run| !stored.contains(&run.key)).peekable();
+    let first = missing.peek().and_then(|run| plan.is_foreign(run));
+    match first {
+        Some(reason) if missing.all(|run| plan.is_foreign(run).is_some()) => {
+            Err(RunError::foreign(&reason).into())
+        }
+        _ => Ok(()),
     }
 }
 

@@ -80,6 +80,9 @@ pub enum FolderError {
         /// The experiment wanted.
         expected: String,
     },
+    /// A file of somebody's own would be lost.
+    #[error("{} is there without results and would be overwritten", .0.display())]
+    Own(PathBuf),
     /// The experiment could not be put into words.
     #[error("cannot write the experiment: {0}")]
     Written(String),
@@ -96,13 +99,23 @@ impl Folder {
     /// may hold runs of the experiment already; those of another version of it stay there.
     pub fn create(path: &Path, plan: Plan) -> Result<Self, FolderError> {
         check_name(path, &plan.name)?;
-        let store = Store::open(path)?;
-        let (experiment, files) = plan.experiment.clone().kept()?;
-        for (name, text) in files {
-            keep(&path.join(name), &text)?;
+        let (experiment, mut files) = plan.experiment.clone().kept()?;
+        files.push((EXPERIMENT.to_owned(), experiment.to_toml().map_err(FolderError::Written)?));
+        let files: Vec<_> = files.into_iter().map(|(name, text)| (path.join(name), text)).collect();
+        if !Store::is_in(path) {
+            // What stands there without results is somebody's own.
+            let differs = |file: &Path, text: &str| {
+                file.exists() && std::fs::read_to_string(file).ok().as_deref() != Some(text)
+            };
+            if let Some((own, _)) = files.iter().find(|(file, text)| differs(file, text)) {
+                return Err(FolderError::Own(own.clone()));
+            }
         }
-        let text = experiment.to_toml().map_err(FolderError::Written)?;
-        let was_another = keep(&path.join(EXPERIMENT), &text)?;
+        let store = Store::open(path)?;
+        let mut was_another = false;
+        for (file, text) in files {
+            was_another = keep(&file, &text)?;
+        }
         Ok(Self { path: path.to_owned(), plan, store, was_another })
     }
 

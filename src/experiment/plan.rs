@@ -15,6 +15,7 @@ use super::targets::TargetTable;
 use super::value::{Quantity, ValueKind};
 use crate::digest::digest;
 use crate::input::{Document, InputError};
+use crate::search::Failure;
 
 /// Raised when a change makes the same run give another result.
 const RESULT_VERSION: u32 = 5;
@@ -289,6 +290,14 @@ impl Plan {
         let optimisers = labelled(&experiment.field, &instances);
         let runs = runs(&instances, &optimisers, seeds, budget);
         experiment.spelt_out(instances, optimisers, runs)
+    }
+
+    /// Why this program cannot do a run, where only the one that made the results can.
+    pub fn is_foreign(&self, run: &RunSpec) -> Option<Failure> {
+        let subject = &self.instances[run.instance].subject;
+        let space = self.optimisers[run.optimiser].space(&self.instances[run.instance]);
+        let own = self.optimisers[run.optimiser].optimiser().err();
+        own.or_else(|| subject.is_foreign().then(|| subject.problem(&space).err()).flatten())
     }
 
     /// Whether some optimisers may spend more than others on the same instance.

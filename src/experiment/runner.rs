@@ -29,7 +29,8 @@ const BATCHES_TO_TIDY: usize = 1_000;
 /// What is done waits no longer to be stored, however few evaluations it took.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
-/// Does those of `runs` that the store does not have, on `jobs` threads.
+/// Does those of `runs` that the store does not have, on `jobs` threads. Those that only another program can do
+/// are an error once all others are done.
 ///
 /// What a run gives does not depend on the other runs. A run that the user interrupts leaves
 /// nothing behind; one that fails, be it by a panic, leaves a record that says so.
@@ -42,7 +43,9 @@ pub fn run(
     progress: &dyn Progress,
 ) -> Result<(), RunError> {
     let stored = store.keys()?;
-    let missing: Vec<_> = runs.iter().copied().filter(|run| !stored.contains(&run.key)).collect();
+    let missing = runs.iter().copied().filter(|run| !stored.contains(&run.key));
+    let (missing, foreign): (Vec<_>, Vec<_>) =
+        missing.partition(|run| plan.is_foreign(run).is_none());
     let batches = batches(&missing);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| RunError::Threads(error.to_string()))?;
@@ -63,7 +66,11 @@ pub fn run(
     let outcomes =
         pool.broadcast(|_| work().inspect_err(|_| next.store(batches.len(), Ordering::Relaxed)));
     outcomes.into_iter().collect::<Result<(), _>>()?;
-    Ok(store.tidy(watch)?)
+    store.tidy(watch)?;
+    match foreign.first().and_then(|run| plan.is_foreign(run)) {
+        Some(reason) => Err(RunError::foreign(&reason)),
+        None => Ok(()),
+    }
 }
 
 /// Cuts runs, in their order, into batches: long runs alone, short ones together.
@@ -120,10 +127,20 @@ pub enum RunError {
     Store(#[from] StoreError),
     /// A problem or an optimiser is another program's.
     #[error("{0}, which alone can do the runs that are missing")]
-    Unavailable(#[from] Failure),
+    Foreign(String),
+    /// A problem could not be made.
+    #[error("cannot make a problem")]
+    Problem(#[from] Failure),
     /// No threads to be had.
     #[error("cannot start worker threads: {0}")]
     Threads(String),
+}
+
+impl RunError {
+    /// That only another program can do what is missing, for this reason.
+    pub(crate) fn foreign(reason: &Failure) -> Self {
+        Self::Foreign(reason.to_string())
+    }
 }
 
 /// What the subject says of a point, complete.

@@ -65,7 +65,9 @@ impl ProblemTable {
     /// What of an instance its results need to be read.
     pub(super) fn of(instance: &Instance) -> Self {
         let Instance { label, group, title, subject, targets, budget, coordinates } = instance;
-        let finite = |values: &[f64]| values.iter().copied().map(Finite).collect();
+        let finite = |values: &[f64]| {
+            values.iter().copied().filter(|value| value.is_finite()).map(Finite).collect()
+        };
         let facts = subject.facts().into_iter().filter(|(_, value)| *value != Value::None);
         Self {
             kind: subject.kind().to_owned(),
@@ -138,6 +140,10 @@ impl Subject for Stored {
             "the problem `{}` belongs to the program that made these results",
             self.table.name
         )))
+    }
+
+    fn is_foreign(&self) -> bool {
+        true
     }
 
     fn dimension(&self) -> usize {

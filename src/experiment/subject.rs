@@ -124,6 +124,12 @@ pub trait Subject: Send + Sync {
         Exhibits::default()
     }
 
+    /// Whether only the program that made the results can search it.
+    #[doc(hidden)]
+    fn is_foreign(&self) -> bool {
+        false
+    }
+
     /// The subject itself, for exhibits that have to know more of their instances than this trait tells.
     fn as_any(&self) -> Option<&dyn Any> {
         None

@@ -125,7 +125,7 @@ fn targets_hit(trace: &[Row]) -> Vec<Row> {
 /// The best so far at every mark of the evaluations, at 1, 2, 5, 10, … times the dimension, and at the end.
 fn at_marks(trace: &[Row], dimension: u16) -> Vec<Row> {
     let last = trace.last().map_or(1, |row| row.evaluation);
-    let scaled = (0..=last.ilog10()).flat_map(|decade| {
+    let scaled = (0..=last.max(1).ilog10()).flat_map(|decade| {
         [1, 2, 5].map(|n| 10_u64.pow(decade).saturating_mul(n * u64::from(dimension)))
     });
     let spaced = (0..).map(|i| 10_f64.powf(f64::from(i) / MARKS) as u64);

@@ -296,3 +296,47 @@ fn a_folder_belongs_to_one_experiment() {
     assert!(stderr(&output).contains("`brief`"), "{}", stderr(&output));
     assert_eq!(fs::read(folder.path().join("calm/experiment.toml")).unwrap(), kept);
 }
+
+/// An experiment that this program cannot read is not replaced by another, nor are files that stand where there are
+/// no results.
+#[test]
+fn what_is_not_understood_is_kept() {
+    let (folder, _) = undisturbed();
+    let experiment = folder.path().join("calm/experiment.toml");
+    for text in ["name = ", "seeds = 3", "name = 'brief'\nfuture = 1\nname = 'brief'"] {
+        fs::write(&experiment, text).unwrap();
+        let output = folder.run(&["run", "brief.toml", "--out", "calm"]);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert_eq!(fs::read_to_string(&experiment).unwrap(), text);
+    }
+    let own = format!("# mine\n{EXPERIMENT}");
+    fs::create_dir(folder.path().join("own")).unwrap();
+    let folder = folder.with("own/experiment.toml", own.clone());
+    let output = folder.run(&["run", "own/experiment.toml", "--out", "own"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert_eq!(fs::read_to_string(folder.path().join("own/experiment.toml")).unwrap(), own);
+    assert!(!folder.path().join("own/runs").exists());
+}
+
+/// Whatever byte of a table is changed, the table is read or named.
+#[test]
+fn changed_bytes_are_no_panic() {
+    let (folder, _) = undisturbed();
+    let out = folder.path().join("calm");
+    assert!(folder.run(&["compact", "calm"]).status.success());
+    let tables = fs::read_dir(out.join("runs")).unwrap().map(|entry| entry.unwrap().path());
+    let path =
+        tables.filter(|path| path.extension().is_some_and(|e| e == "parquet")).next().unwrap();
+    let whole = fs::read(&path).unwrap();
+    // Most of a small table is what describes it, at its end.
+    for (k, place) in (whole.len() / 2..whole.len()).step_by(whole.len() / 80).enumerate() {
+        let mut bytes = whole.clone();
+        bytes[place] ^= [0x01, 0x27, 0x80, 0xff][k % 4];
+        fs::write(&path, bytes).unwrap();
+        let output = folder.run(&["status", "calm"]);
+        let told = stderr(&output).split_whitespace().collect::<String>();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let is_named = told.replace('│', "").contains(name);
+        assert!(output.status.success() || output.status.code() == Some(1) && is_named, "{told}");
+    }
+}

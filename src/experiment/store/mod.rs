@@ -82,6 +82,11 @@ impl Store {
         Ok(Self::existing(folder))
     }
 
+    /// Whether a folder has tables.
+    pub(in crate::experiment) fn is_in(folder: &Path) -> bool {
+        TABLES.iter().any(|table| folder.join(table).is_dir())
+    }
+
     /// A folder to read; where it has no tables there are no runs.
     pub fn existing(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), most_runs: compact::MOST_RUNS }

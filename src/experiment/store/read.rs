@@ -3,11 +3,13 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs::{self, File};
 use std::io;
+use std::path::PathBuf;
 
 use polars::prelude::*;
 
 use super::stack::Stack;
 use super::{SEVERAL, Store, StoreError, TABLES, damaged, io_error};
+use crate::experiment::caught::caught;
 use crate::experiment::schema::runs;
 
 impl Store {
@@ -154,10 +156,7 @@ impl Store {
 
     /// Number of rows of a batch's traces.
     pub(super) fn trace_rows(&self, batch: &str) -> Result<usize, StoreError> {
-        let path = self.path("traces", batch);
-        let rows = |file| ParquetReader::new(file).num_rows();
-        let rows = File::open(&path).map_err(PolarsError::from).and_then(rows);
-        rows.map_err(damaged(path))
+        parquet(self.path("traces", batch), |file| ParquetReader::new(file).num_rows())
     }
 
     /// Reads some columns of a batch's file of a table; optional ones that it lacks are null.
@@ -171,10 +170,7 @@ impl Store {
         if optional.is_empty() {
             return self.read_file(table, batch, Some(columns));
         }
-        let path = self.path(table, batch);
-        let schema = |file| ParquetReader::new(file).schema();
-        let schema = File::open(&path).map_err(PolarsError::from).and_then(schema);
-        let schema = schema.map_err(damaged(path))?;
+        let schema = parquet(self.path(table, batch), |file| ParquetReader::new(file).schema())?;
         let (has, lacks): (Vec<&str>, Vec<&str>) =
             optional.iter().partition(|name| schema.get(name).is_some());
         let mut frame = self.read_file(table, batch, Some(&[columns, &has].concat()))?;
@@ -192,16 +188,26 @@ impl Store {
         batch: &str,
         columns: Option<&[&str]>,
     ) -> Result<DataFrame, StoreError> {
-        let path = self.path(table, batch);
         let columns = columns.filter(|columns| !columns.is_empty());
         let columns = columns.map(|names| names.iter().map(|&name| name.to_owned()).collect());
-        let read = |file| {
+        parquet(self.path(table, batch), |file| {
             ParquetReader::new(file)
                 .with_columns(columns)
                 .read_parallel(ParallelStrategy::None)
                 .finish()
-        };
-        File::open(&path).map_err(PolarsError::from).and_then(read).map_err(damaged(path))
+        })
+    }
+}
+
+/// Reads something of a file. Where it is damaged, polars may panic.
+fn parquet<T>(path: PathBuf, read: impl FnOnce(File) -> PolarsResult<T>) -> Result<T, StoreError> {
+    let file = match File::open(&path) {
+        Ok(file) => file,
+        Err(error) => return Err(damaged(path)(error.into())),
+    };
+    match caught(|| read(file)) {
+        Ok(outcome) => outcome.map_err(damaged(path)),
+        Err(panic) => Err(damaged(path)(polars_err!(ComputeError: "{panic}"))),
     }
 }
 
