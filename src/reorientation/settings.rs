@@ -94,11 +94,13 @@ impl TaskFile {
 
 impl TrajectoryTable {
     /// Free coefficients per joint.
+    #[cfg(feature = "harness")]
     pub(crate) fn terms(&self) -> &Spanned<usize> {
         &self.terms
     }
 
     /// The same settings with another number of terms.
+    #[cfg(feature = "harness")]
     #[must_use]
     pub(crate) fn with_terms(&self, terms: Spanned<usize>) -> Self {
         Self { terms, ..self.clone() }

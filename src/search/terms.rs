@@ -114,6 +114,7 @@ impl Term {
     }
 
     /// The term with this floor.
+    #[must_use]
     pub fn at_least(self, floor: f64) -> Self {
         Self { floor, ..self }
     }

@@ -6,6 +6,7 @@ mod pose;
 use std::sync::Arc;
 
 use nalgebra::UnitQuaternion;
+#[cfg(feature = "harness")]
 use serde_json::{Value, json};
 
 use crate::robot::Robot;
@@ -32,6 +33,7 @@ impl Task {
     /// All that a motion's cost follows from, as JSON: [`Robot::identity`], `start` and `goal` with `joints`
     /// \[rad or m\] and `base`, a quaternion `w, x, y, z` from base axes to inertial axes, `limits` on rate,
     /// acceleration and jerk per joint, and `base_weight`.
+    #[cfg(feature = "harness")]
     pub(crate) fn identity(&self) -> Value {
         json!({
             "robot": self.robot.identity(),
@@ -61,6 +63,7 @@ pub struct Posture {
     pub base: UnitQuaternion<f64>,
 }
 
+#[cfg(feature = "harness")]
 impl Posture {
     fn identity(&self) -> Value {
         let [x, y, z, w]: [f64; 4] = self.base.coords.into();

@@ -324,9 +324,8 @@ fn changed_bytes_are_no_panic() {
     let (folder, _) = undisturbed();
     let out = folder.path().join("calm");
     assert!(folder.run(&["compact", "calm"]).status.success());
-    let tables = fs::read_dir(out.join("runs")).unwrap().map(|entry| entry.unwrap().path());
-    let path =
-        tables.filter(|path| path.extension().is_some_and(|e| e == "parquet")).next().unwrap();
+    let mut tables = fs::read_dir(out.join("runs")).unwrap().map(|entry| entry.unwrap().path());
+    let path = tables.find(|path| path.extension().is_some_and(|e| e == "parquet")).unwrap();
     let whole = fs::read(&path).unwrap();
     // Most of a small table is what describes it, at its end.
     for (k, place) in (whole.len() / 2..whole.len()).step_by(whole.len() / 80).enumerate() {
