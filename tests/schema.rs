@@ -6,6 +6,7 @@ use std::fs;
 
 use driftless::experiment::schema::{Cell, Column, clocks, runs, traces};
 use driftless::experiment::{Experiment, Folder, Options, Quantity};
+use driftless::input::Document;
 use driftless::registry;
 use driftless::search::Watch;
 use polars::prelude::*;
@@ -69,4 +70,26 @@ fn stored_tables_have_the_columns_in_order() {
             frame.get_column_names().into_iter().map(PlSmallStr::as_str).collect();
         assert_eq!(found, names(columns, facts, measures), "{table}");
     }
+}
+
+/// What a run's key is the hash of: stored runs are found by it, so it changes only where results do.
+#[test]
+fn the_recipe_of_a_run_is_pinned() {
+    let text = "
+        name = 'pinned'
+        seeds = 1
+        budget = { evaluations = 100 }
+        functions = { name = ['sphere'], dimension = [2] }
+        [[optimiser]]
+        pso = {}
+    ";
+    let document = Document::embedded("pinned.toml", text);
+    let plan = Experiment::read(&document, &registry()).unwrap().plan().unwrap();
+    let recipe = concat!(
+        r#"{"format":6,"version":5,"subject":{"kind":"function","name":"sphere","#,
+        r#""identity":{"dimension":2,"instance":1}},"formulation":"","optimiser":{"pso":{"#,
+        r#""population":150,"inertia":{"first":0.9,"last":0.1},"cognitive":2.0,"social":2.0,"#,
+        r#""delta":1.0,"velocity_limit":0.2,"walls":"reflect"}},"seed":1,"evaluations":100}"#,
+    );
+    assert_eq!(plan.runs[0].recipe, recipe);
 }

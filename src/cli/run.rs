@@ -27,7 +27,7 @@ pub(super) struct Run {
     /// Number of seeds, instead of the file's
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     seeds: Option<u64>,
-    /// Evaluations a run, instead of the file's
+    /// Evaluations per run, instead of the file's
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     budget: Option<u64>,
     /// Runs at a time [default: one per processor]
