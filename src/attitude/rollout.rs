@@ -41,7 +41,7 @@ pub struct Rollout<F: Family> {
 impl<F: Family> Rollout<F> {
     /// With so many Magnus steps, rounded up to whole panels.
     pub fn new(family: &F, steps: usize) -> Self {
-        let panels = steps.div_ceil(STEPS);
+        let panels = family.panels(steps.div_ceil(STEPS));
         let places = nodes();
         let times = (0..panels).step_by(MOST).flat_map(|first| {
             places.into_iter().flat_map(move |place| {

@@ -36,6 +36,11 @@ pub trait Family: Debug + Clone + Send + Sync + 'static {
     /// The places of a joint's own coefficients among all.
     fn coefficients_of(&self, joint: usize) -> Range<usize>;
 
+    /// So many panels of equal width at least, for rules of quadrature that want smooth paths in each.
+    fn panels(&self, least: usize) -> usize {
+        least
+    }
+
     /// Tables for these times, filled up with the path's start to a number that pairs of lanes divide.
     fn nodes(&self, times: impl IntoIterator<Item = f64>) -> Self::Nodes;
 

@@ -1,10 +1,12 @@
-//! Joint paths `θ = Δ₁ sin s + Δ₂` with a polynomial phase `s` (eqs. 11–15, 24), in normalised time
-//! `τ = t / t_f`.
+//! Families of joint paths in normalised time `τ = t / t_f`: the paper's `θ = Δ₁ sin s + Δ₂` with a polynomial phase
+//! `s` (eqs. 11–15, 24), and splines.
 //!
 //! The shape of a path is free of timing: rates scale with `1/t_f`, accelerations with `1/t_f²`,
 //! jerks with `1/t_f³`.
 
 mod basis;
+mod bernstein;
+mod bspline;
 mod family;
 mod grid;
 mod path;
@@ -12,9 +14,12 @@ mod peaks;
 mod samples;
 mod sine;
 mod sine_family;
+mod spline;
+mod spline_peaks;
 mod window;
 
 pub use basis::Basis;
+pub use bspline::Knots;
 pub use family::{AtPhase, Curve, Family};
 pub use grid::Grid;
 pub use path::{JointPath, Path};
@@ -22,3 +27,5 @@ pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, excess, longest_
 pub use samples::{Sampler, Samples};
 pub use sine::SinePolynomial;
 pub use sine_family::SineCurve;
+pub use spline::{Spline, SplineCurve, SplineNodes};
+pub use spline_peaks::{SplineSampler, SplineSamples};
