@@ -6,9 +6,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use driftless::analysis;
-use driftless::experiment::{self, Identity, Instance, Plan, Progress, Record, RunSpec, Store};
+use driftless::experiment::{
+    self, Experiment, Identity, Instance, Plan, Progress, Record, RunSpec, Store,
+};
 use driftless::functions::{Analytic, TestFunction};
+use driftless::input::Document;
 use driftless::optimiser::Settings;
+use driftless::registry;
 use driftless::search::{Bounds, Evaluation, Failure, Points, Problem};
 use driftless::search::{Oracle, Watch};
 use polars::prelude::*;
@@ -305,5 +309,21 @@ fn a_panic_within_a_batch_leaves_exact_counts() {
         assert_eq!(best, (returned > 0).then(|| 1.0 / returned as f64));
         let trace = oracle.into_trace();
         assert_eq!(trace.last().map(|row| row.evaluation), best.map(|_| call.min(8)));
+    }
+}
+
+/// Quantities that would share a column are refused before anything runs.
+#[test]
+fn quantities_have_columns_of_their_own() {
+    let real = |name: &str| format!("{{ name = '{name}', kind = 'real' }}");
+    for measures in [real("seconds"), format!("{}, {{ name = 'q', kind = 'text' }}", real("q"))] {
+        let text = format!(
+            "name = 'clash'\n[[problem]]\nkind = 'problem'\nname = 'p'\ndimension = 2\nstart_cost = 1.0\n\
+             identity = '{{}}'\nmeasures = [{measures}]\n[[optimiser]]\nrandom = {{}}\n"
+        );
+        let document = Document::embedded("clash.toml", &text);
+        let experiment = Experiment::read(&document, &registry()).unwrap();
+        let refused = experiment.plan().unwrap_err().to_string();
+        assert!(refused.contains("found the quantity"), "{refused}");
     }
 }

@@ -120,7 +120,7 @@ impl Run {
     fn run_missing(&self, folder: &Folder, shard: Option<Shard>) -> Result<(), CliError> {
         let (watch, mine, store) = (watch(), folder.runs(shard), &folder.store);
         if self.fresh {
-            let own = mine.iter().filter(|run| folder.plan.is_foreign(run).is_none());
+            let own = mine.iter().filter(|run| folder.plan.obstacle(run).is_none());
             store.remove(&own.map(|run| run.key.as_str()).collect())?;
         }
         let stored = store.keys()?;
@@ -151,16 +151,14 @@ impl Run {
 
 /// Whether this program can do any of what is missing, before anything is written.
 fn check_possible(plan: &Plan, path: &Path) -> Result<(), CliError> {
-    if plan.runs.iter().all(|run| plan.is_foreign(run).is_none()) {
+    if plan.runs.iter().all(|run| plan.obstacle(run).is_none()) {
         return Ok(());
     }
     let stored = Store::existing(path).keys()?;
-    let mut missing = plan.runs.iter().filter(|run| !stored.contains(&run.key)).peekable();
-    let first = missing.peek().and_then(|run| plan.is_foreign(run));
-    match first {
-        Some(reason) if missing.all(|run| plan.is_foreign(run).is_some()) => {
-            Err(RunError::foreign(&reason).into())
-        }
+    let missing = plan.runs.iter().filter(|run| !stored.contains(&run.key));
+    let obstacles: Option<Vec<_>> = missing.map(|run| plan.obstacle(run)).collect();
+    match obstacles.as_deref() {
+        Some([reason, ..]) => Err(RunError::foreign(reason).into()),
         _ => Ok(()),
     }
 }

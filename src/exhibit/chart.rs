@@ -27,7 +27,8 @@ pub struct Chart {
 
 impl Chart {
     /// Lines over one abscissa: each with its name and its points, `[x, y]`. `name` is that of the chart's
-    /// files, on the terms of [`Table::new`](super::Table::new), `table` that of the table with its data; `axes` are labels with units.
+    /// files, on the terms of [`Table::new`](super::Table::new), `table` that of the table with its data;
+    /// `axes` are labels with units.
     pub fn lines(
         [name, title, caption, table]: [&str; 4],
         axes: [&str; 2],

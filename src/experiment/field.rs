@@ -217,7 +217,7 @@ fn combinations<'i>(
             return match sweep {
                 None => Ok((beside, vec![choice])),
                 Some(sweep) => {
-                    let message = "found a sweep of an optimiser of another program";
+                    let message = "found a sweep beside `outside`, expected none";
                     Err(document.error_at(sweep.span(), message, None))
                 }
             };

@@ -81,7 +81,7 @@ pub enum FolderError {
         expected: String,
     },
     /// A file of somebody's own would be lost.
-    #[error("{} is there without results and would be overwritten", .0.display())]
+    #[error("{} exists without results beside it and would be overwritten", .0.display())]
     Own(PathBuf),
     /// The experiment could not be put into words.
     #[error("cannot write the experiment: {0}")]

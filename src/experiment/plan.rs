@@ -12,7 +12,7 @@ use super::run::Run;
 use super::schema::{FORMAT, runs};
 use super::subject::{Instance, Results};
 use super::targets::TargetTable;
-use super::value::{Quantity, ValueKind};
+use super::value::Quantity;
 use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::search::Failure;
@@ -96,9 +96,10 @@ impl Experiment {
             return Err(document.error_at(self.field_place.clone(), message, None));
         }
         check_instances(&instances, document)?;
-        check_quantities(&instances, document)?;
         self.check_labels(&optimisers)?;
-        Ok(self.spelt_out(instances, optimisers, runs))
+        let plan = self.spelt_out(instances, optimisers, runs);
+        check_quantities(&plan, document)?;
+        Ok(plan)
     }
 
     fn spelt_out(
@@ -160,26 +161,21 @@ fn check_instances(instances: &[Instance], document: &Document) -> Result<(), In
     }
 }
 
-/// Whether facts and measures have columns of their own, and one kind of values each.
-fn check_quantities(instances: &[Instance], document: &Document) -> Result<(), InputError> {
-    let error = |message: String| Err(document.error_at(0..0, message, None));
-    let mut known: HashMap<String, ValueKind> = HashMap::new();
-    for Instance { subject, .. } in instances {
-        let facts = subject.facts().into_iter().map(|(fact, _)| fact);
-        for Quantity { name, kind, .. } in facts.chain(subject.measures()) {
-            if runs::COLUMNS.iter().any(|column| column.name == name) {
-                return error(format!(
-                    "found a quantity `{name}`, expected a name that no column of `runs` has"
-                ));
-            }
-            if known.insert(name.clone(), kind).is_some_and(|before| before != kind) {
-                return error(format!(
-                    "found the quantity `{name}` with two kinds of values, expected one"
-                ));
-            }
+/// Whether every fact and measure has a column of its own, and one kind of values.
+fn check_quantities(plan: &Plan, document: &Document) -> Result<(), InputError> {
+    let columns = runs::COLUMNS.iter().map(|column| column.name);
+    let mut taken: HashSet<&str> = columns.collect();
+    let mut quantities = plan.facts.iter().chain(&plan.measures);
+    match quantities.find(|quantity| !taken.insert(&quantity.name)) {
+        Some(Quantity { name, .. }) => {
+            let message = format!(
+                "found the quantity `{name}`, expected a name that neither a column of `runs` nor another fact or \
+                 measure has"
+            );
+            Err(document.error_at(0..0, message, None))
         }
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Whether an optimiser can search every instance: whether it has the formulation asked for and, where need be,
@@ -293,11 +289,13 @@ impl Plan {
     }
 
     /// Why this program cannot do a run, where only the one that made the results can.
-    pub fn is_foreign(&self, run: &RunSpec) -> Option<Failure> {
-        let subject = &self.instances[run.instance].subject;
-        let space = self.optimisers[run.optimiser].space(&self.instances[run.instance]);
-        let own = self.optimisers[run.optimiser].optimiser().err();
-        own.or_else(|| subject.is_foreign().then(|| subject.problem(&space).err()).flatten())
+    pub fn obstacle(&self, run: &RunSpec) -> Option<Failure> {
+        let (instance, entrant) = (&self.instances[run.instance], &self.optimisers[run.optimiser]);
+        match entrant.optimiser() {
+            Err(failure) => Some(failure),
+            Ok(_) if !instance.subject.is_foreign() => None,
+            Ok(_) => instance.subject.problem(&entrant.space(instance)).err(),
+        }
     }
 
     /// Whether some optimisers may spend more than others on the same instance.
@@ -366,11 +364,13 @@ impl Plan {
     }
 }
 
-/// The quantities of some, each name once.
+/// The quantities of some, each name once with every kind of values that it has.
 fn unlike(all: impl Iterator<Item = Quantity>) -> Vec<Quantity> {
     let mut quantities: Vec<Quantity> = Vec::new();
     for quantity in all {
-        if quantities.iter().all(|known| known.name != quantity.name) {
+        let is_other =
+            |known: &Quantity| known.name != quantity.name || known.kind != quantity.kind;
+        if quantities.iter().all(is_other) {
             quantities.push(quantity);
         }
     }

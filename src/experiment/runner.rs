@@ -9,7 +9,7 @@ use super::record::{Ended, Record, Status};
 use super::store::{Store, StoreError};
 use super::subject::Subject;
 use super::value::Judgement;
-use crate::search::{Failure, Oracle, Rng, Stop, Watch};
+use crate::search::{Failure, Oracle, Rng, Watch};
 
 /// Told of every run that ends.
 pub trait Progress: Sync {
@@ -45,7 +45,7 @@ pub fn run(
     let stored = store.keys()?;
     let missing = runs.iter().copied().filter(|run| !stored.contains(&run.key));
     let (missing, foreign): (Vec<_>, Vec<_>) =
-        missing.partition(|run| plan.is_foreign(run).is_none());
+        missing.partition(|run| plan.obstacle(run).is_none());
     let batches = batches(&missing);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| RunError::Threads(error.to_string()))?;
@@ -67,7 +67,7 @@ pub fn run(
         pool.broadcast(|_| work().inspect_err(|_| next.store(batches.len(), Ordering::Relaxed)));
     outcomes.into_iter().collect::<Result<(), _>>()?;
     store.tidy(watch)?;
-    match foreign.first().and_then(|run| plan.is_foreign(run)) {
+    match foreign.first().and_then(|run| plan.obstacle(run)) {
         Some(reason) => Err(RunError::foreign(&reason)),
         None => Ok(()),
     }
@@ -170,27 +170,24 @@ fn one(
     let (problem, optimiser) = (instance.subject.problem(&space)?, entrant.optimiser()?);
     let mut oracle = Oracle::new(&*problem, run.budget, watch);
     let started = Instant::now();
-    let mut outcome = caught(|| optimiser.minimise(&mut oracle, &mut Rng::new(run.seed)));
+    let outcome = caught(|| optimiser.minimise(&mut oracle, &mut Rng::new(run.seed)));
     let seconds = started.elapsed();
-    if matches!(outcome, Ok(Err(Stop::Interrupted))) {
+    let Some(mut status) = Status::from_outcome(outcome) else {
         return Ok(None);
-    }
+    };
     let best = oracle.best();
     let judged =
         caught(|| best.map_or(Ok(None), |best| judge(&*instance.subject, &space, &best.x)));
     let (judgement, is_unjudged) = match judged {
         Ok(Ok(judgement)) => (judgement, false),
-        Ok(Err(error)) => {
-            outcome = Ok(Err(error.into()));
+        Ok(Err(failure)) => {
+            status = Status::Failed(failure.to_string());
             (None, true)
         }
         Err(panic) => {
-            outcome = Err(panic);
+            status = Status::Panicked(panic);
             (None, true)
         }
-    };
-    let Some(status) = Status::from_outcome(outcome) else {
-        return Ok(None);
     };
     // What the run did not spend will not be spent.
     watch.add_evaluations(oracle.remaining());

@@ -6,12 +6,12 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::UnitQuaternion;
 
 use super::accuracy::Accuracy;
-use super::measure::{Fitness, Given, Measure, Tables, Turn, Workspace, powers};
+use super::measure::{Fitness, Given, Measure, Tables, Turn, Workspace};
 use super::terms::{Terms, penalty};
 use crate::lanes::Width;
 use crate::search::Evaluation;
 use crate::task::Task;
-use crate::trajectory::{Family, Peaks, SinePolynomial, excess, longest_asked};
+use crate::trajectory::{Family, Peaks, SinePolynomial, excess, longest_asked, powers};
 
 /// The reorientation task over one trajectory family.
 #[derive(Debug, Clone)]

@@ -10,7 +10,7 @@ use crate::attitude::{Midpoints, Rollout};
 use crate::lanes::{LaneWork, Lanes};
 use crate::momentum::{Arm, JointState};
 use crate::task::Task;
-use crate::trajectory::{Family, SinePolynomial, longest_asked};
+use crate::trajectory::{Family, SinePolynomial, longest_asked, powers};
 
 /// All that does not depend on the motion, worked out once.
 #[derive(Debug)]
@@ -45,11 +45,6 @@ impl<F: Family> Tables<F> {
 pub struct Workspace<F: Family = SinePolynomial> {
     pub(super) samples: F::Samples,
     joints: Vec<JointState>,
-}
-
-/// First to third power of a duration: what rate, acceleration and jerk over it are divided by.
-pub(super) fn powers(duration: f64) -> [f64; 3] {
-    [duration, duration * duration, duration * duration * duration]
 }
 
 /// What is the same for all motions of a problem.

@@ -233,7 +233,7 @@ impl<'a> Oracle<'a> {
         self.begin();
         self.linearisations += 1;
         let linearisation = self.timed(|| composite.linearise(x))?;
-        let form = self.form.get_or_insert_with(|| linearisation.form());
+        let form = self.form.get_or_insert_with(|| linearisation.form().collect());
         linearisation.check(x.len(), form)?;
         self.record(x, linearisation.evaluation());
         Ok(linearisation)

@@ -175,7 +175,7 @@ impl Linearisation {
 
     /// Cost and violation.
     pub fn evaluation(&self) -> Evaluation {
-        Evaluation { cost: self.cost(), violation: self.violation }
+        Evaluation::new(self.cost(), self.violation)
     }
 
     /// `J`.
@@ -184,8 +184,8 @@ impl Linearisation {
     }
 
     /// The weight and shape of every term.
-    pub(super) fn form(&self) -> Vec<(f64, Shape)> {
-        self.terms.iter().map(|term| (term.weight, term.shape)).collect()
+    pub(super) fn form(&self) -> impl Iterator<Item = (f64, Shape)> {
+        self.terms.iter().map(|term| (term.weight, term.shape))
     }
 
     /// Whether the terms have the form that they had at another point, weights are sound, pieces of a term have
@@ -212,7 +212,7 @@ impl Linearisation {
                 .into());
             }
         }
-        if self.form() != form {
+        if !self.form().eq(form.iter().copied()) {
             let reason = "found other weights or shapes of terms than at the point before";
             return Err(Failure::new(reason));
         }
@@ -268,7 +268,8 @@ mod tests {
     fn misshapen_linearisations_are_refused() {
         let told = |term: Term| {
             let found = Linearisation::new(vec![term]);
-            found.check(2, &found.form()).map_err(|f| f.to_string())
+            let form: Vec<_> = found.form().collect();
+            found.check(2, &form).map_err(|f| f.to_string())
         };
         let piece = || Piece::new(0, 1.0, [1.0, 2.0]);
         assert_eq!(told(Term::max(1.0, vec![piece()])), Ok(()));

@@ -23,7 +23,7 @@ pub use bspline::Knots;
 pub use family::{AtPhase, Curve, Family};
 pub use grid::Grid;
 pub use path::{JointPath, Path};
-pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, excess, longest_asked};
+pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, excess, longest_asked, powers};
 pub use samples::{Sampler, Samples};
 pub use sine::SinePolynomial;
 pub use sine_family::SineCurve;

@@ -92,6 +92,11 @@ pub fn longest_asked(ratios: [f64; 3]) -> f64 {
     asked.fold(0.0, f64::max)
 }
 
+/// First to third power of a duration: what rate, acceleration and jerk over it are divided by.
+pub fn powers(duration: f64) -> [f64; 3] {
+    [duration, duration * duration, duration * duration * duration]
+}
+
 /// `F` of eqs. 26–28 from the largest multiples of the limits.
 pub fn excess(ratios: [f64; 3]) -> [f64; 3] {
     ratios.map(|ratio| (ratio - 1.0).max(0.0))

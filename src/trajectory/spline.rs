@@ -275,7 +275,7 @@ impl Family for Spline {
 
 #[cfg(test)]
 mod tests {
-    use super::super::peaks::{duration_asked, longest_asked};
+    use super::super::peaks::{duration_asked, longest_asked, powers};
     use super::*;
 
     fn families() -> impl Iterator<Item = (Spline, Vec<f64>)> {
@@ -350,10 +350,8 @@ mod tests {
                 }
             }
             let limits = Limits(vec![[1.0, 4.0, 30.0]; 3]);
-            let duration = longest_asked(samples.largest_ratio(&limits, |known| {
-                let longest = longest_asked(known);
-                [longest, longest.powi(2), longest.powi(3)]
-            }));
+            let matters = |known| powers(longest_asked(known));
+            let duration = longest_asked(samples.largest_ratio(&limits, matters));
             let exact = peaks.shortest_duration(&limits);
             assert!((duration - exact).abs() < 1e-14 * exact, "{duration} {exact}");
             let places = family.local_peaks(&samples, &coefficients, &limits, 0.9);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::bernstein::Bernstein;
 use super::bspline::{Knots, MOST_DEGREE};
-use super::peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, longest_asked};
+use super::peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, longest_asked, powers};
 
 /// What peaks of splines are found with: how Bernstein coefficients follow from control points.
 #[derive(Debug, Clone)]
@@ -55,6 +55,11 @@ impl SplineSampler {
     }
 }
 
+/// What no value of a spline with these control points exceeds.
+fn largest_magnitude(points: &[f64]) -> f64 {
+    points.iter().fold(0.0, |largest, point| f64::max(largest, point.abs()))
+}
+
 /// One derivative of one joint's path.
 #[derive(Clone, Copy)]
 struct Row<'a> {
@@ -75,8 +80,7 @@ impl Row<'_> {
 
     /// What the magnitude does not exceed on a piece.
     fn bound(&self, piece: usize) -> f64 {
-        let own = &self.points[piece..=piece + self.degree()];
-        own.iter().fold(0.0, |bound, point| f64::max(bound, point.abs()))
+        largest_magnitude(&self.points[piece..=piece + self.degree()])
     }
 
     /// The polynomial of a piece.
@@ -167,8 +171,7 @@ impl SplineSamples {
             for (joint, limit) in limits.0.iter().enumerate() {
                 let row = self.row(joint, order);
                 let floor = matters(known)[k] * limit[k];
-                let bound = row.points.iter().fold(0.0, |b, point| f64::max(b, point.abs()));
-                if bound > floor {
+                if largest_magnitude(row.points) > floor {
                     known[k] = f64::max(known[k], row.peak().value / limit[k]);
                 }
             }
@@ -178,16 +181,13 @@ impl SplineSamples {
 
     /// All candidates for peaks that ask for a duration not below `share` of the longest asked for.
     pub(super) fn local_peaks(&self, limits: &Limits, share: f64) -> Vec<LocalPeak> {
-        let largest = self.largest_ratio(limits, |known| {
-            let longest = longest_asked(known);
-            [longest, longest.powi(2), longest.powi(3)]
-        });
+        let largest = self.largest_ratio(limits, |known| powers(longest_asked(known)));
         let least = share * longest_asked(largest);
         let mut places = Vec::new();
         for (joint, limit) in limits.0.iter().enumerate() {
             for order in 1..=3 {
                 let limit = limit[order - 1];
-                let floor = limit * least.powi(order as i32);
+                let floor = limit * powers(least)[order - 1];
                 let peaks = self.row(joint, order).candidates(floor);
                 let near = peaks.filter(|peak| duration_asked(peak.value / limit, order) >= least);
                 places.extend(near.map(|peak| LocalPeak { joint, order, tau: peak.tau }));
