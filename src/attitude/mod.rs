@@ -30,21 +30,21 @@ const SQRT_15: f64 = 3.872_983_346_207_417;
 /// Where three Gauss–Legendre nodes lie in a step, in its widths.
 const GAUSS: [f64; 3] = [0.5 - SQRT_15 / 10.0, 0.5, 0.5 + SQRT_15 / 10.0];
 
-/// The rotations of `steps` equal steps of the path, in order; their product turns the attitude at
+/// The rotations of `steps` equal steps of the path whose angles and rates at a time `write` gives, in order; their product turns the attitude at
 /// the start into the attitude at the end.
 ///
 /// Every step has three nodes of its own: the plain form of what [`Rollout`] does.
 pub fn increments<'a>(
     robot: &'a Robot,
-    path: &'a Path<'_>,
     steps: usize,
+    write: impl Fn(f64, &mut [f64], &mut [f64]) + 'a,
 ) -> impl ExactSizeIterator<Item = UnitQuaternion<f64>> {
     let width = 1.0 / steps as f64;
     let mut angles = vec![0.0; robot.joint_count()];
     let mut rates = angles.clone();
     (0..steps).map(move |i| {
         let mut rate = |node: f64| {
-            path.angles_and_rates((i as f64 + node) * width, &mut angles, &mut rates);
+            write((i as f64 + node) * width, &mut angles, &mut rates);
             base_twist(robot, &angles, &rates).angular * width
         };
         so3::exp(magnus(gauss_moments(GAUSS.map(&mut rate)))).into()
@@ -53,7 +53,10 @@ pub fn increments<'a>(
 
 /// The rotation of the base over the whole path, from its attitude at the start, in base axes.
 pub fn net_rotation(robot: &Robot, path: &Path<'_>, steps: usize) -> UnitQuaternion<f64> {
-    increments(robot, path, steps).fold(UnitQuaternion::identity(), |net, step| net * step)
+    let write = |tau, angles: &mut [f64], rates: &mut [f64]| {
+        path.angles_and_rates(tau, angles, rates);
+    };
+    increments(robot, steps, write).fold(UnitQuaternion::identity(), |net, step| net * step)
 }
 
 /// The moments of a step from what stands at its three Gauss nodes.

@@ -12,7 +12,8 @@ use crate::output::check_writable;
 use crate::output::create_folder;
 use crate::reorientation::{Assessment, Motion, Reorientation};
 use crate::reorientation::{INTERVALS, MotionFormat, write_motion};
-use crate::trajectory::SinePolynomial;
+use crate::task::Task;
+use crate::trajectory::{Family, SinePolynomial};
 
 /// Where to write a motion.
 #[derive(Debug, Args)]
@@ -53,9 +54,9 @@ impl MotionFiles {
     }
 
     /// Writes what was asked for.
-    pub(super) fn write(
+    pub(super) fn write<F: Family>(
         &self,
-        problem: &Reorientation,
+        problem: &Reorientation<F>,
         coefficients: &[f64],
         duration: f64,
     ) -> Result<(), CliError> {
@@ -118,6 +119,13 @@ pub(super) struct ShapeJson {
 }
 
 impl ShapeJson {
+    /// Coefficients of any family, joint by joint.
+    pub(super) fn of<F: Family>(family: &F, coefficients: &[f64]) -> Self {
+        let own = |joint| coefficients[family.coefficients_of(joint)].to_vec();
+        let coefficients = (0..family.joints()).map(own).collect();
+        Self { alpha6: None, alpha7: None, coefficients }
+    }
+
     pub(super) fn new(family: &SinePolynomial, coefficients: &[f64], duration: f64) -> Self {
         let alpha = family.to_alpha(coefficients, duration);
         let mut powers = alpha.chunks_exact(family.joints()).map(<[f64]>::to_vec);
@@ -125,26 +133,25 @@ impl ShapeJson {
         Self {
             alpha6: powers.next().filter(|_| two),
             alpha7: powers.next().filter(|_| two),
-            coefficients: coefficients.chunks_exact(family.terms()).map(<[f64]>::to_vec).collect(),
+            ..Self::of(family, coefficients)
         }
     }
 }
 
 /// For people: cost and its parts, then the peaks joint by joint with the share of the limit used.
 pub(super) struct Told<'a> {
-    pub(super) problem: &'a Reorientation,
+    pub(super) task: &'a Task,
     pub(super) assessment: &'a Assessment,
 }
 
 impl fmt::Display for Told<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { problem, assessment } = self;
+        let Self { task, assessment } = self;
         writeln!(f, "  J              {:.6}", assessment.cost)?;
         writeln!(f, "  duration       {:.6} s", assessment.duration)?;
         writeln!(f, "  base residual  {:.6}°", assessment.residual().to_degrees())?;
         writeln!(f, "  penalty        {:.6}", assessment.penalty())?;
         writeln!(f, "  joint          rate [°/s]     acceleration [°/s²]   jerk [°/s³]")?;
-        let task = problem.task();
         let joints = task.robot.joints().zip(&assessment.peaks.0).zip(&task.limits.0);
         for ((joint, peaks), limits) in joints {
             write!(f, "  {:<12}", joint.name)?;

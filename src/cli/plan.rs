@@ -1,5 +1,6 @@
 //! `driftless plan`.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -10,11 +11,14 @@ use serde::Serialize;
 use super::motion::{AssessmentJson, MotionFiles, ShapeJson, Told};
 use super::progress::Bar;
 use super::{CliError, read_or, shown, warn_of, watch};
-use crate::input::nearest;
-use crate::optimiser::Settings;
-use crate::reorientation::{Accuracy, Assessment, BestKnown, Formulated, Formulation, TaskFile};
-use crate::search::{Oracle, Rng, Stop};
+use crate::input::{InputError, nearest};
+use crate::optimiser::{Scp, Settings};
+use crate::reorientation::{
+    Accuracy, Assessment, BestKnown, Formulated, Formulation, Reorientation, TaskFile,
+};
+use crate::search::{BoundsError, Oracle, Rng, Stop};
 use crate::task::TaskTable;
+use crate::trajectory::{Family, SinePolynomial, Spline};
 
 /// Find the best motion for one task
 #[derive(Debug, Args)]
@@ -25,6 +29,15 @@ pub(super) struct Plan {
     /// Optimiser, with its default settings; `driftless list` shows them
     #[arg(long, value_name = "NAME", default_value = "scp")]
     optimiser: String,
+    /// Family of motions: the file's sine polynomials, or splines, which are faster and reach more goals
+    #[arg(long, value_name = "NAME", default_value = "sine-polynomial")]
+    family: FamilyName,
+    /// Pieces of a spline
+    #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u16).range(4..=1000))]
+    pieces: u16,
+    /// Degree of a spline: 3 has a constant jerk on each piece, 4 a continuous one, 5 a smooth one
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u8).range(3..=5))]
+    degree: u8,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -41,6 +54,18 @@ pub(super) struct Plan {
     files: MotionFiles,
 }
 
+/// The families that a motion may be of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum FamilyName {
+    /// The paper's.
+    SinePolynomial,
+    /// Splines over equal pieces.
+    Spline,
+}
+
+/// Starts that `scp` follows over splines.
+const SPLINE_STARTS: usize = 4;
+
 /// A residual above it is worth a warning.
 const GOAL_REACHED_DEG: f64 = 0.01;
 
@@ -49,7 +74,13 @@ struct PlanJson<'a> {
     task: String,
     optimiser: &'a str,
     seed: u64,
-    terms: usize,
+    family: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    terms: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pieces: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    degree: Option<usize>,
     best_known_j: Option<f64>,
     #[serde(flatten)]
     assessment: AssessmentJson,
@@ -64,8 +95,8 @@ struct PlanJson<'a> {
 }
 
 /// What the search came to.
-struct Found {
-    problem: Formulated,
+struct Found<F: Family> {
+    problem: Formulated<F>,
     coefficients: Vec<f64>,
     assessment: Assessment,
     evaluations: u64,
@@ -84,37 +115,94 @@ impl Plan {
         let file = TaskFile::read(&document)?;
         let (problem, boxes) = file.build(&document)?;
         warn_of(&problem.task().robot);
+        let refused = |error| document.error_at(0..0, error, None);
+        if self.family == FamilyName::Spline {
+            return self.plan_spline(&settings, &problem, refused);
+        }
         // Default settings name no formulation.
         let formulation =
             Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree);
-        let formulated = Formulated::new(formulation, Arc::new(problem), &boxes)
-            .map_err(|error| document.error_at(0..0, error, None))?;
+        let formulated =
+            Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
         let found = self.search(&settings, formulated)?;
+        let reorientation = found.problem.task();
+        let known = BestKnown::of(reorientation);
         if self.json {
-            say!("{}", self.json(&found));
+            let family = reorientation.family();
+            let shape = ShapeJson::new(family, &found.coefficients, found.assessment.duration);
+            say!("{}", self.json(&found, shape, known, |json| json.terms = Some(family.terms())));
         } else {
-            let problem = found.problem.task();
-            let told = Told { problem, assessment: &found.assessment };
-            say!(
-                "{} by {}, seed {}",
-                shown(self.file.as_ref(), "the paper's task"),
-                self.optimiser,
-                self.seed
-            );
-            say!("{told}");
-            if let Some(known) = BestKnown::of(problem) {
-                say!("  this J         {}", known.compared_with(found.assessment.cost));
-            }
-            say!("  {} evaluations in {:.2} s", found.evaluations, found.seconds);
+            self.tell(&found, known)?;
         }
         let residual = found.assessment.residual().to_degrees();
         if residual > GOAL_REACHED_DEG {
             note!(
-                "warning: the base ends {residual:.3}° from its goal; more terms, another optimiser, such \
-                 as a hybrid, a larger budget or a larger `weights.base` may bring it there"
+                "warning: the base ends {residual:.3}° from its goal; `--family spline`, more terms, another \
+                 optimiser, such as a hybrid, a larger budget or a larger `weights.base` may bring it there"
             );
         }
         self.say_entry(&found, file.task);
+        self.finish(&found)
+    }
+
+    /// The same over splines.
+    fn plan_spline(
+        &self,
+        settings: &Settings,
+        problem: &Reorientation,
+        refused: impl Fn(BoundsError) -> InputError,
+    ) -> Result<(), CliError> {
+        let (task, pieces, degree) =
+            (problem.task().clone(), usize::from(self.pieces), usize::from(self.degree));
+        let family = Spline::new(&task.start.joints, &task.goal.joints, pieces, degree);
+        let problem = Reorientation::over(task, family, problem.accuracy());
+        let formulated = Formulated::free_form(Arc::new(problem)).map_err(refused)?;
+        // Starts end alike more often than among sine polynomials, and each takes longer.
+        let settings = match settings {
+            Settings::Scp(scp) => {
+                Settings::Scp(Scp { starts: NonZeroUsize::new(SPLINE_STARTS), ..scp.clone() })
+            }
+            other => other.clone(),
+        };
+        let found = self.search(&settings, formulated)?;
+        if self.json {
+            let shape = ShapeJson::of(found.problem.task().family(), &found.coefficients);
+            let json = self.json(&found, shape, None, |json| {
+                (json.pieces, json.degree) = (Some(pieces), Some(degree));
+            });
+            say!("{json}");
+        } else {
+            self.tell(&found, None)?;
+        }
+        let residual = found.assessment.residual().to_degrees();
+        if residual > GOAL_REACHED_DEG {
+            note!(
+                "warning: the base ends {residual:.3}° from its goal; another `--seed`, more `--pieces` or a larger \
+                 `weights.base` may bring it there"
+            );
+        }
+        self.finish(&found)
+    }
+
+    /// Says what was found, to people.
+    fn tell<F: Family>(&self, found: &Found<F>, known: Option<&BestKnown>) -> Result<(), CliError> {
+        let told = Told { task: found.problem.task().task(), assessment: &found.assessment };
+        say!(
+            "{} by {}, seed {}",
+            shown(self.file.as_ref(), "the paper's task"),
+            self.optimiser,
+            self.seed
+        );
+        say!("{told}");
+        if let Some(known) = known {
+            say!("  this J         {}", known.compared_with(found.assessment.cost));
+        }
+        say!("  {} evaluations in {:.2} s", found.evaluations, found.seconds);
+        Ok(())
+    }
+
+    /// Writes the files that were asked for.
+    fn finish<F: Family>(&self, found: &Found<F>) -> Result<(), CliError> {
         self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
         if found.interrupted {
             return Err(CliError::Interrupted("this is the best motion so far".to_owned()));
@@ -122,7 +210,11 @@ impl Plan {
         Ok(())
     }
 
-    fn search(&self, settings: &Settings, problem: Formulated) -> Result<Found, CliError> {
+    fn search<F: Family>(
+        &self,
+        settings: &Settings,
+        problem: Formulated<F>,
+    ) -> Result<Found<F>, CliError> {
         let watch = watch();
         let mut oracle = Oracle::new(&problem, self.budget, &watch);
         let started = Instant::now();
@@ -157,7 +249,7 @@ impl Plan {
     }
 
     /// Says how the motion stands in the file of the best known: where it should, or was asked to.
-    fn say_entry(&self, found: &Found, task: TaskTable) {
+    fn say_entry(&self, found: &Found<SinePolynomial>, task: TaskTable) {
         let (problem, cost) = (found.problem.task(), found.assessment.cost);
         let beaten = BestKnown::of(problem).filter(|known| known.is_beaten_by(cost));
         if let Some(known) = beaten {
@@ -176,17 +268,28 @@ impl Plan {
         }
     }
 
-    fn json(&self, found: &Found) -> String {
-        let Found { assessment, coefficients, .. } = found;
-        let family = found.problem.task().family();
-        let json = PlanJson {
+    fn json<F: Family>(
+        &self,
+        found: &Found<F>,
+        shape: ShapeJson,
+        known: Option<&BestKnown>,
+        describe: impl FnOnce(&mut PlanJson<'_>),
+    ) -> String {
+        let family = match self.family {
+            FamilyName::SinePolynomial => "sine-polynomial",
+            FamilyName::Spline => "spline",
+        };
+        let mut json = PlanJson {
             task: shown(self.file.as_ref(), "xiao2023"),
             optimiser: &self.optimiser,
             seed: self.seed,
-            terms: family.terms(),
-            best_known_j: BestKnown::of(found.problem.task()).map(|known| known.j),
-            assessment: assessment.into(),
-            shape: ShapeJson::new(family, coefficients, assessment.duration),
+            family,
+            terms: None,
+            pieces: None,
+            degree: None,
+            best_known_j: known.map(|known| known.j),
+            assessment: (&found.assessment).into(),
+            shape,
             evaluations: found.evaluations,
             linearisations: found.linearisations,
             curvatures: found.curvatures,
@@ -194,6 +297,7 @@ impl Plan {
             lanes: found.problem.task().width().lanes(),
             seconds: found.seconds,
         };
+        describe(&mut json);
         serde_json::to_string_pretty(&json).unwrap_or_default()
     }
 }

@@ -59,7 +59,7 @@ impl Replay {
             for reading in Reading::ALL {
                 let assessment = published.assess(reading);
                 say!("read {}:", reading.meaning());
-                say!("{}", Told { problem: &published.problem, assessment: &assessment });
+                say!("{}", Told { task: published.problem.task(), assessment: &assessment });
             }
         }
         self.files.write(&published.problem, &published.coefficients, published.duration)

@@ -6,7 +6,7 @@ use super::fitness::Reorientation;
 use super::measure::Tables;
 use crate::attitude::{RotationCurvature, RotationSlopes};
 use crate::lanes::{LaneWork, Lanes};
-use crate::search::{Failure, Linearisation, Multipliers, Piece, PieceId};
+use crate::search::{ErrorSlopes, Failure, Linearisation, Multipliers, Piece, PieceId};
 use crate::trajectory::{Curve, Family, LocalPeak, duration_asked};
 
 /// How far below the largest, as a share of it, a part may lie to be linearised too.
@@ -25,6 +25,18 @@ impl<F: Family> Reorientation<F> {
         let durations =
             places.into_iter().map(|place| self.duration_piece(&curves[place.joint], place));
         self.terms().time_free(self.base_error_pieces(&slopes), durations.collect())
+    }
+
+    /// The base's error, for families whose derivatives are linear in their coefficients.
+    pub(super) fn error_slopes(&self, coefficients: &[f64]) -> ErrorSlopes {
+        let mut samples = self.workspace().samples;
+        let net = self.width().run(Slopes { problem: self, coefficients, samples: &mut samples });
+        let (error, by_turn) = self.turned_error(net.rotation);
+        let slopes = by_turn * &net.by_coefficient;
+        ErrorSlopes {
+            value: DVector::from_column_slice(error.imag().as_slice()),
+            slopes: DMatrix::from_column_slice(3, slopes.ncols(), slopes.as_slice()),
+        }
     }
 
     /// The joints' paths.

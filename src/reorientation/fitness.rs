@@ -36,6 +36,8 @@ pub struct Assessment {
     pub duration: f64,
     /// `F` of eqs. 26–28 for rate, acceleration and jerk.
     pub excess: [f64; 3],
+    /// By how much joints leave their ranges, as a share of half the range of the one that does so most.
+    pub range_excess: f64,
     /// Largest rate, acceleration and jerk of each joint \[rad/s, rad/s², rad/s³\].
     pub peaks: Peaks,
 }
@@ -140,15 +142,17 @@ impl<F: Family> Reorientation<F> {
         let measure = Measure { given: self.given(), coefficients, workspace: &mut workspace };
         let attitude_error = self.width.run(measure);
         let peaks = self.family.peaks(&workspace.samples, coefficients);
+        let range_excess = self.range_excess(&workspace);
         let (duration, excess) = match duration {
             Some(duration) => (duration, peaks.over(duration).excess(&self.task.limits)),
             None => (peaks.shortest_duration(&self.task.limits), [0.0; 3]),
         };
         Assessment {
-            cost: self.terms().cost(attitude_error, duration, &excess),
+            cost: self.terms().cost(attitude_error, duration, &excess, range_excess),
             attitude_error,
             duration,
             excess,
+            range_excess,
             peaks: peaks.over(duration),
         }
     }
@@ -175,8 +179,13 @@ impl<F: Family> Reorientation<F> {
             }
             None => (longest_asked(largest), [0.0; 3]),
         };
-        let cost = self.terms().cost(attitude_error, duration, &excess);
-        Evaluation { cost, violation: excess.iter().sum() }
+        let beyond = self.range_excess(workspace);
+        let cost = self.terms().cost(attitude_error, duration, &excess, beyond);
+        Evaluation { cost, violation: excess.iter().sum::<f64>() + beyond }
+    }
+
+    fn range_excess(&self, workspace: &Workspace<F>) -> f64 {
+        self.family.range_excess(&workspace.samples, &self.tables.ranges)
     }
 
     fn check(&self, coefficients: &[f64]) {
@@ -210,8 +219,8 @@ impl Assessment {
         2.0 * self.attitude_error.clamp(0.0, 1.0).asin()
     }
 
-    /// The last three terms of `J`.
+    /// The last three terms of `J`, and one more of the same weight for joints out of their ranges.
     pub fn penalty(&self) -> f64 {
-        penalty(&self.excess)
+        penalty(&self.excess, self.range_excess)
     }
 }

@@ -12,8 +12,9 @@ use super::measure::Workspace;
 use super::settings::Boxes;
 use crate::search::{
     Bounds, BoundsError, Composite, Evaluation, Failure, Linearisation, Multipliers, Points,
-    Problem,
+    Problem, Timed,
 };
+use crate::trajectory::{Family, SinePolynomial, Spline};
 
 /// The variables in which an optimiser sees the task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -49,10 +50,12 @@ impl Formulation {
 
 /// The reorientation task in one of its formulations.
 #[derive(Debug, Clone)]
-pub struct Formulated {
+pub struct Formulated<F: Family = SinePolynomial> {
     formulation: Formulation,
-    task: Arc<Reorientation>,
+    task: Arc<Reorientation<F>>,
     bounds: Bounds,
+    /// The family whose powers of time the variables are, where they are.
+    powers: Option<SinePolynomial>,
 }
 
 impl Formulated {
@@ -75,11 +78,31 @@ impl Formulated {
         if formulation != Formulation::TimeFree {
             pairs.push(boxes.duration);
         }
-        Ok(Self { formulation, task, bounds: Bounds::new(pairs)? })
+        let powers = (formulation == Formulation::Raw).then(|| family.clone());
+        Ok(Self { formulation, task, bounds: Bounds::new(pairs)?, powers })
     }
+}
 
+impl Formulated<Spline> {
+    /// The task without a duration over splines, which may leave the joints' ranges with every control point by a tenth of
+    /// the range's width: a path that touches the end of a range has some beyond it.
+    pub fn free_form(task: Arc<Reorientation<Spline>>) -> Result<Self, BoundsError> {
+        let (family, mut pairs) = (task.family(), Vec::new());
+        let mut straight = vec![0.0; family.knots().points()];
+        for (joint, [lower, upper]) in task.task().robot.joints().map(|j| j.range).enumerate() {
+            family.write_points(joint, &[], &mut straight);
+            let more = (upper - lower) / 10.0;
+            let own = &straight[family.fixed()..straight.len() - family.fixed()];
+            pairs.extend(own.iter().map(|point| [lower - more - point, upper + more - point]));
+        }
+        let bounds = Bounds::new(pairs)?;
+        Ok(Self { formulation: Formulation::TimeFree, task, bounds, powers: None })
+    }
+}
+
+impl<F: Family> Formulated<F> {
     /// The task behind the formulation.
-    pub fn task(&self) -> &Reorientation {
+    pub fn task(&self) -> &Reorientation<F> {
         &self.task
     }
 
@@ -93,10 +116,8 @@ impl Formulated {
     fn write_decoded(&self, x: &[f64], coefficients: &mut [f64]) -> Option<f64> {
         let (shape, duration) = x.split_at(coefficients.len());
         let duration = duration.first().copied();
-        match (self.formulation, duration) {
-            (Formulation::Raw, Some(t)) => {
-                self.task.family().write_from_alpha(shape, t, coefficients);
-            }
+        match (&self.powers, duration) {
+            (Some(family), Some(t)) => family.write_from_alpha(shape, t, coefficients),
             _ => coefficients.copy_from_slice(shape),
         }
         duration
@@ -104,7 +125,7 @@ impl Formulated {
 
     fn evaluate_in(
         &self,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<F>,
         coefficients: &mut [f64],
         x: &[f64],
     ) -> Evaluation {
@@ -121,9 +142,9 @@ impl Formulated {
 
     /// The point that stands for a motion; its duration is left out where it is no variable.
     pub fn encode(&self, coefficients: &[f64], duration: f64) -> Vec<f64> {
-        let mut x = match self.formulation {
-            Formulation::Raw => self.task.family().to_alpha(coefficients, duration),
-            Formulation::Scaled | Formulation::TimeFree => coefficients.to_vec(),
+        let mut x = match &self.powers {
+            Some(family) => family.to_alpha(coefficients, duration),
+            None => coefficients.to_vec(),
         };
         if self.formulation != Formulation::TimeFree {
             x.push(duration);
@@ -132,7 +153,7 @@ impl Formulated {
     }
 }
 
-impl Problem for Formulated {
+impl<F: Family> Problem for Formulated<F> {
     fn bounds(&self) -> &Bounds {
         &self.bounds
     }
@@ -156,11 +177,18 @@ impl Problem for Formulated {
     }
 
     fn composite(&self) -> Option<&dyn Composite> {
-        (self.formulation == Formulation::TimeFree).then_some(self)
+        let is_composite =
+            self.formulation == Formulation::TimeFree && !self.task.family().is_linear();
+        is_composite.then_some(self)
+    }
+
+    fn timed(&self) -> Option<&dyn Timed> {
+        let is_timed = self.formulation == Formulation::TimeFree && self.task.family().is_linear();
+        is_timed.then_some(self)
     }
 }
 
-impl Composite for Formulated {
+impl<F: Family> Composite for Formulated<F> {
     fn linearise(&self, x: &[f64]) -> Result<Linearisation, Failure> {
         Ok(self.task().linearise(x))
     }

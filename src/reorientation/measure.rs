@@ -19,6 +19,8 @@ pub(super) struct Tables<F: Family> {
     pub(super) rollout: Rollout<F>,
     pub(super) sampler: F::Sampler,
     pub(super) midpoints: Midpoints<F>,
+    /// The joints' ranges.
+    pub(super) ranges: Vec<[f64; 2]>,
 }
 
 /// Midpoint steps along the path for the curvature.
@@ -31,6 +33,7 @@ impl<F: Family> Tables<F> {
             rollout: Rollout::new(family, accuracy.attitude_steps),
             sampler: family.sampler(accuracy.peak_intervals),
             midpoints: Midpoints::new(family, CURVATURE_STEPS),
+            ranges: task.robot.joints().map(|joint| joint.range).collect(),
         })
     }
 

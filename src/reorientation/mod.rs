@@ -27,6 +27,7 @@ mod sweep;
 #[cfg(feature = "harness")]
 mod symbols;
 mod terms;
+mod timed;
 
 pub use accuracy::Accuracy;
 pub use best_known::{BestKnown, fingerprint};

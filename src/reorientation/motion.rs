@@ -4,6 +4,7 @@ use nalgebra::UnitQuaternion;
 
 use super::fitness::Reorientation;
 use crate::attitude::increments;
+use crate::trajectory::{Curve as _, Family};
 
 /// Everything that moves, at equally spaced times from start to end.
 #[derive(Debug, Clone)]
@@ -27,23 +28,29 @@ pub struct JointMotion {
 
 impl Motion {
     /// Samples the path with these coefficients at `intervals + 1` times over `duration` seconds.
-    pub fn sample(
-        problem: &Reorientation,
+    pub fn sample<F: Family>(
+        problem: &Reorientation<F>,
         coefficients: &[f64],
         duration: f64,
         intervals: usize,
     ) -> Self {
         let task = problem.task();
-        let path = problem.family().path(coefficients);
+        let family = problem.family();
+        let curve = |joint| family.curve(joint, &coefficients[family.coefficients_of(joint)]);
+        let curves: Vec<_> = (0..family.joints()).map(curve).collect();
         let taus: Vec<f64> = (0..=intervals).map(|i| i as f64 / intervals as f64).collect();
-        let joints = task.robot.joints().zip(path.joints()).map(|(joint, path)| {
+        let joints = task.robot.joints().zip(&curves).map(|(joint, path)| {
             let derivatives = taus.iter().map(|&tau| {
                 let values = path.derivatives::<4>(tau);
                 std::array::from_fn(|k| values[k] / duration.powi(k as i32))
             });
             JointMotion { name: joint.name.to_owned(), derivatives: derivatives.collect() }
         });
-        let steps = increments(&task.robot, &path, intervals);
+        let steps = increments(&task.robot, intervals, |tau, angles, rates| {
+            for ((angle, rate), curve) in angles.iter_mut().zip(rates).zip(&curves) {
+                [*angle, *rate] = curve.derivatives(tau);
+            }
+        });
         let mut base = vec![task.start.base];
         base.extend(steps.scan(task.start.base, |attitude, step| {
             *attitude *= step;

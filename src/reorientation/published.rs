@@ -187,10 +187,11 @@ impl Published {
         let excess = peaks.excess(&task.limits);
         let attitude_error = attitude_error(&roll_first(&task.goal), &end);
         Assessment {
-            cost: self.problem.terms().cost(attitude_error, self.duration, &excess),
+            cost: self.problem.terms().cost(attitude_error, self.duration, &excess, 0.0),
             attitude_error,
             duration: self.duration,
             excess,
+            range_excess: 0.0,
             peaks,
         }
     }

@@ -1,6 +1,6 @@
 //! The terms of the cost (eqs. 25–28, 33), for all that needs them.
 
-use crate::search::{Linearisation, Piece, Term};
+use crate::search::{Linearisation, Piece, Term, TimedWeights};
 
 /// The base error that counts as one: `k_q = sin(½ · 1°)` (eq. 33; its "δ" is π).
 const K_Q_DEG: f64 = 1.0;
@@ -23,9 +23,20 @@ impl Terms {
         Self { error: base_weight / k_q, duration: 1.0 - base_weight }
     }
 
-    /// `J` of a motion: `‖δq_b‖`, its duration \[s\] and its excess over the limits.
-    pub(super) fn cost(&self, error: f64, duration: f64, excess: &[f64; 3]) -> f64 {
-        self.error * error + self.duration * duration + penalty(excess)
+    /// `J` of a motion: `‖δq_b‖`, its duration \[s\] and its excess over limits and ranges.
+    pub(super) fn cost(
+        &self,
+        error: f64,
+        duration: f64,
+        excess: &[f64; 3],
+        range_excess: f64,
+    ) -> f64 {
+        self.error * error + self.duration * duration + penalty(excess, range_excess)
+    }
+
+    /// What time, the error and the excess over the joints' ranges weigh.
+    pub(super) fn timed(&self) -> TimedWeights {
+        TimedWeights { time: self.duration, error: self.error, excess: 1.0 / K_EXCESS }
     }
 
     /// The terms over smooth pieces: the components of the error, and the duration \[s\] that each limit
@@ -39,7 +50,7 @@ impl Terms {
     }
 }
 
-/// The last term, of the excess `F` of eqs. 26–28.
-pub(super) fn penalty(excess: &[f64; 3]) -> f64 {
-    excess.iter().sum::<f64>() / K_EXCESS
+/// The last term, of the excess `F` of eqs. 26–28 and that over the joints' ranges, which the paper's family never leaves.
+pub(super) fn penalty(excess: &[f64; 3], range_excess: f64) -> f64 {
+    (excess.iter().sum::<f64>() + range_excess) / K_EXCESS
 }

@@ -107,6 +107,7 @@ mod points;
 mod problem;
 mod rng;
 mod terms;
+mod timed;
 
 pub use evaluation::Evaluation;
 pub use failure::Failure;
@@ -115,3 +116,4 @@ pub use points::{Bounds, BoundsError, Points, PointsIter, PointsIterMut};
 pub use problem::{Composite, Problem};
 pub use rng::Rng;
 pub use terms::{Linearisation, Multipliers, Piece, PieceId, Shape, Term};
+pub use timed::{ErrorSlopes, Limit, Limits, Timed, TimedWeights};

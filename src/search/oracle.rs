@@ -9,7 +9,9 @@ use super::evaluation::Evaluation;
 use super::failure::Failure;
 use super::points::{Bounds, Points};
 use super::problem::{Composite, Problem};
+use super::rng::Rng;
 use super::terms::{Linearisation, Multipliers, Shape};
+use super::timed::{ErrorSlopes, Limits, Timed, TimedWeights};
 
 /// Why an optimiser has to stop.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -177,7 +179,7 @@ impl<'a> Oracle<'a> {
         self.check_dimension(x.len())?;
         self.begin();
         let problem = self.problem;
-        let evaluation = self.timed(|| problem.evaluate(x))?;
+        let evaluation = self.clocked(|| problem.evaluate(x))?;
         self.record(x, evaluation);
         Ok(evaluation)
     }
@@ -232,11 +234,46 @@ impl<'a> Oracle<'a> {
         let composite = self.composite(x)?;
         self.begin();
         self.linearisations += 1;
-        let linearisation = self.timed(|| composite.linearise(x))?;
+        let linearisation = self.clocked(|| composite.linearise(x))?;
         let form = self.form.get_or_insert_with(|| linearisation.form().collect());
         linearisation.check(x.len(), form)?;
         self.record(x, linearisation.evaluation());
         Ok(linearisation)
+    }
+
+    /// Evaluates one point of a [`Timed`](super::Timed) problem together with all that its cost follows from: one
+    /// evaluation and one linearisation. Slopes of another shape than error and point ask for are a failure.
+    pub fn timing(&mut self, x: &[f64]) -> Result<(Limits, ErrorSlopes), Stop> {
+        self.check()?;
+        self.check_dimension(x.len())?;
+        let problem = self.problem.timed().ok_or(Stop::NoDerivatives)?;
+        self.begin();
+        self.linearisations += 1;
+        let (limits, error) =
+            self.clocked(|| Ok::<_, Failure>((problem.limits(x)?, problem.error(x)?)))?;
+        limits.check(x.len())?;
+        error.check(x.len())?;
+        self.record(x, problem.weights().evaluation(&limits, &error));
+        Ok((limits, error))
+    }
+
+    /// The limits of a [`Timed`](super::Timed) problem at a point, which is part of the model of its cost and no evaluation.
+    pub fn limits(&mut self, x: &[f64]) -> Result<Limits, Stop> {
+        self.check_dimension(x.len())?;
+        let problem = self.problem.timed().ok_or(Stop::NoDerivatives)?;
+        let limits = self.clocked(|| problem.limits(x))?;
+        limits.check(x.len())?;
+        Ok(limits)
+    }
+
+    /// What parts of a [`Timed`](super::Timed) cost weigh, where the problem has one.
+    pub fn timed_weights(&self) -> Option<TimedWeights> {
+        self.problem.timed().map(Timed::weights)
+    }
+
+    /// A random point to search a [`Timed`](super::Timed) problem from.
+    pub fn timed_start(&self, rng: &mut Rng) -> Option<Vec<f64>> {
+        self.problem.timed().map(|problem| problem.start(rng))
     }
 
     /// The second derivative of a Lagrangian at a point, `n × n` for `n` variables.
@@ -247,7 +284,7 @@ impl<'a> Oracle<'a> {
     ) -> Result<DMatrix<f64>, Stop> {
         let composite = self.composite(x)?;
         self.curvatures += 1;
-        let curvature = self.timed(|| composite.curvature(x, multipliers))?;
+        let curvature = self.clocked(|| composite.curvature(x, multipliers))?;
         if curvature.shape() != (x.len(), x.len()) {
             let ((rows, columns), n) = (curvature.shape(), x.len());
             let reason =
@@ -330,7 +367,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// Does work that is the problem's, on its clock.
-    fn timed<R>(&mut self, work: impl FnOnce() -> R) -> R {
+    fn clocked<R>(&mut self, work: impl FnOnce() -> R) -> R {
         let clock = Instant::now();
         let result = work();
         self.in_problem += clock.elapsed();

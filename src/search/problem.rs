@@ -6,6 +6,7 @@ use super::evaluation::Evaluation;
 use super::failure::Failure;
 use super::points::{Bounds, Points};
 use super::terms::{Linearisation, Multipliers};
+use super::timed::Timed;
 
 /// A box-bounded minimisation problem.
 pub trait Problem: Send + Sync {
@@ -36,6 +37,11 @@ pub trait Problem: Send + Sync {
 
     /// The same problem with derivatives, where it has them; always or never.
     fn composite(&self) -> Option<&dyn Composite> {
+        None
+    }
+
+    /// The same problem with its time and linear limits, where it has them; always or never.
+    fn timed(&self) -> Option<&dyn Timed> {
         None
     }
 }

@@ -116,8 +116,41 @@ pub trait Family: Debug + Clone + Send + Sync + 'static {
     /// The largest peaks of the sampled path.
     fn peaks(&self, samples: &Self::Samples, coefficients: &[f64]) -> Peaks;
 
+    /// By how much the sampled path leaves the joints' ranges, as a share of half the range of the joint that does so most;
+    /// zero within, and for a family that never leaves them.
+    fn range_excess(&self, _samples: &Self::Samples, _ranges: &[[f64; 2]]) -> f64 {
+        0.0
+    }
+
+    /// Whether derivatives of the path are linear in the coefficients, so that [`sites`](Self::sites) has all that they
+    /// may do.
+    fn is_linear(&self) -> bool {
+        false
+    }
+
+    /// Of a family that [is linear](Self::is_linear), calls `each` for every place where a derivative of the sampled path
+    /// may be largest in magnitude.
+    fn sites(&self, _samples: &Self::Samples, _each: &mut dyn FnMut(&Site)) {}
+
     /// One joint's path, from its own coefficients.
     fn curve(&self, joint: usize, own: &[f64]) -> Self::Curve<'_>;
+}
+
+/// A derivative of a joint's path at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Site {
+    /// Index of the joint.
+    pub joint: usize,
+    /// 0 for the position, 1 for the rate, 2 for the acceleration, 3 for the jerk.
+    pub order: usize,
+    /// The derivative by `τ`.
+    pub value: f64,
+    /// Which of the places that are the same on every path; none for one that moves with the path.
+    pub place: Option<usize>,
+    /// The first coefficient that the derivative follows.
+    pub first: usize,
+    /// Its slopes by those from there on.
+    pub slopes: [f64; 6],
 }
 
 /// One joint's path, at any time.

@@ -20,7 +20,7 @@ mod window;
 
 pub use basis::Basis;
 pub use bspline::Knots;
-pub use family::{AtPhase, Curve, Family};
+pub use family::{AtPhase, Curve, Family, Site};
 pub use grid::Grid;
 pub use path::{JointPath, Path};
 pub use peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, excess, longest_asked, powers};

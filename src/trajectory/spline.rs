@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::bspline::{Knots, MOST_DEGREE};
-use super::family::{AtPhase, Curve, Family};
+use super::family::{AtPhase, Curve, Family, Site};
 use super::peaks::{Limits, LocalPeak, Peaks};
 use super::spline_peaks::{SplineSampler, SplineSamples};
 use super::window::step;
@@ -59,12 +59,17 @@ impl Spline {
         &self.knots
     }
 
+    /// Control points at each end of a joint that are the same on every path.
+    pub fn fixed(&self) -> usize {
+        FIXED
+    }
+
     /// Free coefficients per joint.
     pub fn free(&self) -> usize {
         self.knots.points() - 2 * FIXED
     }
 
-    /// Writes a joint's control points \[rad\].
+    /// Writes a joint's control points \[rad\]; coefficients that are missing are zero.
     pub fn write_points(&self, joint: usize, own: &[f64], points: &mut [f64]) {
         let [start, goal] = self.ends[joint];
         for (point, straight) in points.iter_mut().zip(&self.straight) {
@@ -264,6 +269,28 @@ impl Family for Spline {
 
     fn peaks(&self, samples: &SplineSamples, _coefficients: &[f64]) -> Peaks {
         samples.peaks()
+    }
+
+    fn range_excess(&self, samples: &SplineSamples, ranges: &[[f64; 2]]) -> f64 {
+        samples.range_excess(ranges)
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+
+    fn sites(&self, samples: &SplineSamples, each: &mut dyn FnMut(&Site)) {
+        let free = self.free();
+        samples.sites(|mut site| {
+            // The slopes by control points become those by the free ones.
+            let skipped = FIXED.saturating_sub(site.first);
+            site.slopes.rotate_left(skipped);
+            let first = (site.first + skipped).saturating_sub(FIXED);
+            let count = (MOST_DEGREE + 1 - skipped).min(free.saturating_sub(first));
+            site.slopes[count..].fill(0.0);
+            site.first = site.joint * free + first;
+            each(&site);
+        });
     }
 
     fn curve(&self, joint: usize, own: &[f64]) -> SplineCurve<'_> {

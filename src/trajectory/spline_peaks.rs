@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::bernstein::Bernstein;
 use super::bspline::{Knots, MOST_DEGREE};
+use super::family::Site;
 use super::peaks::{Limits, LocalPeak, Peak, Peaks, duration_asked, longest_asked, powers};
 
 /// What peaks of splines are found with: how Bernstein coefficients follow from control points.
@@ -13,9 +14,17 @@ pub struct SplineSampler(Arc<Tables>);
 #[derive(Debug)]
 struct Tables {
     knots: Knots,
-    /// For each order from one and each piece.
-    bernstein: [Vec<[[f64; MOST_DEGREE + 1]; MOST_DEGREE + 1]>; 3],
+    /// For each order and each piece.
+    bernstein: [Vec<[[f64; MOST_DEGREE + 1]; MOST_DEGREE + 1]>; ORDERS],
+    /// The basis functions at the start of every piece, and at the end of the last, from the right where there is one.
+    at_knots: Vec<(usize, Bumps)>,
 }
+
+/// Orders of derivatives that have limits: position, rate, acceleration, jerk.
+const ORDERS: usize = 4;
+
+/// The derivatives of the basis functions that are not zero at a time.
+type Bumps = [[f64; ORDERS]; MOST_DEGREE + 1];
 
 /// The control points of one path's derivatives.
 #[derive(Debug, Clone)]
@@ -27,9 +36,12 @@ pub struct SplineSamples {
 
 impl SplineSampler {
     pub(super) fn new(knots: Knots) -> Self {
-        let bernstein = [1, 2, 3]
-            .map(|order| (0..knots.pieces()).map(|piece| knots.bernstein(piece, order)).collect());
-        Self(Arc::new(Tables { knots, bernstein }))
+        let bernstein = std::array::from_fn(|order| {
+            (0..knots.pieces()).map(|piece| knots.bernstein(piece, order)).collect()
+        });
+        let pieces = knots.pieces();
+        let at_knots = (0..=pieces).map(|i| knots.bumps(i as f64 / pieces as f64)).collect();
+        Self(Arc::new(Tables { knots, bernstein, at_knots }))
     }
 
     pub(super) fn samples(&self, joints: usize) -> SplineSamples {
@@ -87,7 +99,7 @@ impl Row<'_> {
     fn polynomial(&self, piece: usize) -> Bernstein {
         let own = &self.points[piece..=piece + self.degree()];
         let mut coefficients = [0.0; MOST_DEGREE + 1];
-        let rows = &self.tables.bernstein[self.order - 1][piece];
+        let rows = &self.tables.bernstein[self.order][piece];
         for (coefficient, row) in coefficients.iter_mut().zip(rows).take(own.len()) {
             *coefficient = own.iter().zip(row).map(|(point, share)| point * share).sum();
         }
@@ -177,6 +189,59 @@ impl SplineSamples {
             }
         }
         known
+    }
+
+    /// By how much positions leave their ranges, as a share of half the range; zero within.
+    pub(super) fn range_excess(&self, ranges: &[[f64; 2]]) -> f64 {
+        let mut excess: f64 = 0.0;
+        for (joint, &[lower, upper]) in ranges.iter().enumerate() {
+            let (row, half) = (self.row(joint, 0), (upper - lower) / 2.0);
+            // The path stays where its control points are.
+            let beyond = |position: f64| f64::max(lower - position, position - upper);
+            if row.points.iter().all(|&point| beyond(point) <= 0.0) {
+                continue;
+            }
+            for piece in 0..row.pieces() {
+                let polynomial = row.polynomial(piece);
+                // Start and goal, which no path changes, are in the range but for rounding.
+                let knot = (piece > 0).then_some(0.0);
+                for t in polynomial.turns().into_iter().chain(knot) {
+                    excess = excess.max(beyond(polynomial.value(t)) / half);
+                }
+            }
+        }
+        excess
+    }
+
+    /// Every place where a derivative of a joint's path may be largest in magnitude: all knots, and where it turns between
+    /// them.
+    ///
+    /// `first` and `slopes` of a site are those of the joint's control points.
+    pub(super) fn sites(&self, mut each: impl FnMut(Site)) {
+        let Tables { knots, at_knots, .. } = &*self.tables;
+        for joint in 0..self.joints() {
+            let points = self.row(joint, 0).points;
+            let mut site = |order: usize, place, (first, bumps): &(usize, Bumps)| {
+                let slopes = bumps.map(|bump| bump[order]);
+                let own = points[*first..].iter().zip(&slopes).take(knots.degree() + 1);
+                let value = own.map(|(point, slope)| point * slope).sum();
+                each(Site { joint, order, value, place, first: *first, slopes });
+            };
+            for order in 0..ORDERS {
+                let row = self.row(joint, order);
+                let last = knots.pieces() - usize::from(row.degree() == 0);
+                for (i, at) in at_knots[..=last].iter().enumerate() {
+                    site(order, Some(i), at);
+                }
+                if row.degree() >= 2 {
+                    for piece in 0..row.pieces() {
+                        for t in row.polynomial(piece).turns() {
+                            site(order, None, &knots.bumps(row.tau(piece, t)));
+                        }
+                    }
+                }
+            }
+        }
     }
 
     /// All candidates for peaks that ask for a duration not below `share` of the longest asked for.

@@ -17,8 +17,13 @@
 //! A start has been followed to its end when, with the problem's own weights, a step promises next to
 //! nothing and the Lagrangian is level, the first-order condition of a minimum.
 
+mod banded;
+mod bends;
+mod interior_point;
 mod iterate;
 mod subproblem;
+mod timed;
+mod timed_subproblem;
 
 use std::num::NonZeroUsize;
 
@@ -114,7 +119,8 @@ impl Scp {
             random = self.starts.map_or(0, |starts| starts.get() - 1);
         }
         for _ in 0..random {
-            self.follow(oracle, &Self::start(oracle.bounds(), rng))?;
+            let start = oracle.timed_start(rng);
+            self.follow(oracle, &start.unwrap_or_else(|| Self::start(oracle.bounds(), rng)))?;
         }
         Ok(())
     }
@@ -138,6 +144,15 @@ impl Scp {
 
     /// Follows one start to a local optimum.
     pub fn follow(&self, oracle: &mut Oracle<'_>, start: &[f64]) -> Result<Ending, Stop> {
+        if let Some(weights) = oracle.timed_weights() {
+            let mut search = timed::Search::new(self, oracle, weights, start)?;
+            for _ in 0..self.steps.get() {
+                if let Some(ending) = search.step()? {
+                    return Ok(ending);
+                }
+            }
+            return Ok(Ending::StepsSpent);
+        }
         let mut search = Search::new(self, oracle, start)?;
         for _ in 0..self.steps.get() {
             if let Some(ending) = search.step()? {

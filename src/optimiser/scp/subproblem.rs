@@ -11,10 +11,10 @@ use crate::search::{Bounds, Linearisation, Oracle, Piece, Shape, Stop, Term};
 
 /// The part of the box within the trust region, as bounds on the step.
 pub(super) struct Region {
-    lower: DVector<f64>,
-    upper: DVector<f64>,
+    pub(super) lower: DVector<f64>,
+    pub(super) upper: DVector<f64>,
     /// The region's extent in each variable.
-    extent: DVector<f64>,
+    pub(super) extent: DVector<f64>,
 }
 
 impl Region {
@@ -247,15 +247,15 @@ impl Program {
 
 /// A sparse matrix and a right-hand side, row by row.
 #[derive(Default)]
-struct Rows {
+pub(super) struct Rows {
     row_of: Vec<usize>,
     columns: Vec<usize>,
     values: Vec<f64>,
-    b: Vec<f64>,
+    pub(super) b: Vec<f64>,
 }
 
 impl Rows {
-    fn push(&mut self, entries: impl IntoIterator<Item = (usize, f64)>, b: f64) {
+    pub(super) fn push(&mut self, entries: impl IntoIterator<Item = (usize, f64)>, b: f64) {
         for (column, value) in entries {
             self.row_of.push(self.b.len());
             self.columns.push(column);
@@ -264,7 +264,7 @@ impl Rows {
         self.b.push(b);
     }
 
-    fn matrix(&self, columns: usize) -> CscMatrix<f64> {
+    pub(super) fn matrix(&self, columns: usize) -> CscMatrix<f64> {
         CscMatrix::new_from_triplets(
             self.b.len(),
             columns,

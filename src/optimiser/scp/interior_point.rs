@@ -1,0 +1,635 @@
+//! A primal-dual interior-point method for the subproblem of [`timed_subproblem`](super::timed_subproblem), with
+//! predictor and corrector (Mehrotra 1992, doi:10.1137/0802028) and Nesterov–Todd scaling of the cone (Nesterov and Todd
+//! 1997, doi:10.1287/moor.22.1.1).
+//!
+//! A limit follows few variables in a row, so what limits and box add to the Newton matrix is banded. Time, excess, the
+//! cone and the curvature add a border of a few columns. A step so takes a time linear in the number of variables, where
+//! a general solver's sparse factorisation spends most of it on indices.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector4};
+
+use super::banded::{BORDER, Triangle, WIDTH};
+use super::bends::Curvature;
+
+/// Most iterations.
+const ITERATIONS: usize = 60;
+
+/// Share of the way to the boundary that a step goes.
+const FRACTION: f64 = 0.99;
+
+/// A shorter step is none.
+const SHORTEST: f64 = 1e-10;
+
+/// What the gradient may miss, as a share of the price of time.
+const FEASIBLE: f64 = 1e-7;
+
+/// Where rounding ends the method, a gap this many times as large is good enough.
+const NEARLY: f64 = 1e3;
+
+/// Below so many times the gap that is enough, Newton steps are corrected by what they miss.
+const REFINED: f64 = 1e4;
+
+/// Components of the error.
+const COMPONENTS: usize = 3;
+
+/// `a · d − e β ≤ b_0` and `−a · d − e β ≤ b_1`, where `a` is not zero from `first` on only.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    pub(super) first: usize,
+    pub(super) a: [f64; WIDTH],
+    /// Which of the `β` it is: 0 for time, 1 for excess.
+    pub(super) border: usize,
+    pub(super) e: f64,
+    pub(super) b: [f64; 2],
+}
+
+/// Minimise over `d`, `β ≥ 0` and `t`
+///
+/// ```text
+/// κ · β + W t + ½ dᵀ B d    within the rows, lower ≤ d ≤ upper, ‖r + R d‖ ≤ t
+/// ```
+pub(super) struct Program<'a> {
+    pub(super) rows: &'a [Row],
+    pub(super) lower: &'a DVector<f64>,
+    pub(super) upper: &'a DVector<f64>,
+    /// `κ`.
+    pub(super) prices: [f64; 2],
+    /// Of `β` where all rows have room at `d = 0`.
+    pub(super) start: [f64; 2],
+    /// `W`.
+    pub(super) weight: f64,
+    /// `r`, of three components.
+    pub(super) error: &'a DVector<f64>,
+    /// `R`.
+    pub(super) slopes: &'a DMatrix<f64>,
+    pub(super) curvature: &'a Curvature,
+    /// The gap between primal and dual cost that is enough.
+    pub(super) gap: f64,
+}
+
+/// `d` and the error's multiplier, of a length of `W` at most.
+pub(super) struct Minimum {
+    pub(super) d: DVector<f64>,
+    pub(super) nu: DVector<f64>,
+}
+
+/// A pair of slack and multiplier.
+#[derive(Clone, Copy)]
+struct Pair {
+    slack: f64,
+    dual: f64,
+}
+
+/// A second-order cone of dimension four.
+#[derive(Clone, Copy)]
+struct Cone {
+    s: Vector4<f64>,
+    z: Vector4<f64>,
+}
+
+/// Nesterov and Todd's scaling `W`: `W z = W⁻¹ s = λ`.
+struct Scaling {
+    eta: f64,
+    w: Vector4<f64>,
+    lambda: Vector4<f64>,
+}
+
+fn determinant(v: &Vector4<f64>) -> f64 {
+    let length = v.fixed_rows::<3>(1).norm();
+    (v[0] - length) * (v[0] + length)
+}
+
+/// `a ∘ b`.
+fn product(a: &Vector4<f64>, b: &Vector4<f64>) -> Vector4<f64> {
+    let mut c = b * a[0] + a * b[0];
+    c[0] = a.dot(b);
+    c
+}
+
+/// The `x` with `a ∘ x = b`.
+fn quotient(a: &Vector4<f64>, b: &Vector4<f64>) -> Vector4<f64> {
+    let dot = a.dot(b) - a[0] * b[0];
+    let first = (a[0] * b[0] - dot) / determinant(a);
+    let mut x = (b - a * first) / a[0];
+    x[0] = first;
+    x
+}
+
+impl Cone {
+    fn scaling(&self) -> Option<Scaling> {
+        let (det_s, det_z) = (determinant(&self.s), determinant(&self.z));
+        if !(det_s > 0.0 && det_z > 0.0) {
+            return None;
+        }
+        let (s, mut z) = (self.s / det_s.sqrt(), self.z / det_z.sqrt());
+        let gamma = f64::midpoint(1.0, s.dot(&z)).sqrt();
+        z.fixed_rows_mut::<3>(1).neg_mut();
+        let w = (s + z) / (2.0 * gamma);
+        let eta = (det_s / det_z).powf(0.25);
+        let scaling = Scaling { eta, w, lambda: Vector4::zeros() };
+        Some(Scaling { lambda: scaling.times(&self.z), ..scaling })
+    }
+
+    /// How far `s + α ds` and `z + α dz` stay inside.
+    fn room(&self, ds: &Vector4<f64>, dz: &Vector4<f64>) -> f64 {
+        room_in_cone(&self.s, ds).min(room_in_cone(&self.z, dz))
+    }
+}
+
+fn room_in_cone(v: &Vector4<f64>, d: &Vector4<f64>) -> f64 {
+    // det(v + α d) = c + 2 b α + a α²
+    let (a, c) = (determinant(d), determinant(v));
+    let b = 2.0 * v[0] * d[0] - v.dot(d);
+    let mut least = f64::INFINITY;
+    let discriminant = b * b - a * c;
+    if discriminant >= 0.0 {
+        let q = -(b + b.signum() * discriminant.sqrt());
+        for root in [q / a, c / q] {
+            if root > 0.0 {
+                least = least.min(root);
+            }
+        }
+    }
+    if d[0] < 0.0 { least.min(-v[0] / d[0]) } else { least }
+}
+
+impl Scaling {
+    fn times(&self, v: &Vector4<f64>) -> Vector4<f64> {
+        let (w, dot) = (&self.w, self.w.dot(v) - self.w[0] * v[0]);
+        let mut out = v + w * (v[0] + dot / (1.0 + w[0]));
+        out[0] = w[0] * v[0] + dot;
+        out * self.eta
+    }
+
+    fn inverse_times(&self, v: &Vector4<f64>) -> Vector4<f64> {
+        let (w, dot) = (&self.w, self.w.dot(v) - self.w[0] * v[0]);
+        let mut out = v + w * (dot / (1.0 + w[0]) - v[0]);
+        out[0] = w[0] * v[0] - dot;
+        out / self.eta
+    }
+
+    /// Entry of `W²`.
+    fn square(&self, i: usize, j: usize) -> f64 {
+        let j_entry = if i != j {
+            0.0
+        } else if i == 0 {
+            1.0
+        } else {
+            -1.0
+        };
+        self.eta * self.eta * (2.0 * self.w[i] * self.w[j] - j_entry)
+    }
+}
+
+/// All unknowns.
+struct State {
+    d: DVector<f64>,
+    beta: [f64; 2],
+    /// Of each row both sides, then of every variable upper and lower bound, then of the `β`.
+    pairs: Vec<Pair>,
+    cone: Cone,
+}
+
+impl State {
+    /// What the primal cost exceeds the dual one by, where both are feasible.
+    fn gap(&self) -> f64 {
+        let products = self.pairs.iter().map(|pair| pair.slack * pair.dual);
+        products.sum::<f64>() + self.cone.s.dot(&self.cone.z)
+    }
+
+    fn minimum(&self) -> Minimum {
+        let nu = DVector::from_fn(COMPONENTS, |i, _| -self.cone.z[i + 1]);
+        Minimum { d: self.d.clone(), nu }
+    }
+
+    /// The largest multiple of a change that keeps slacks and multipliers positive.
+    fn room(&self, change: &Change) -> f64 {
+        let mut least = self.cone.room(&change.s, &change.z);
+        for (pair, change) in self.pairs.iter().zip(&change.pairs) {
+            if change.slack < 0.0 {
+                least = least.min(-pair.slack / change.slack);
+            }
+            if change.dual < 0.0 {
+                least = least.min(-pair.dual / change.dual);
+            }
+        }
+        least
+    }
+
+    fn advance(&mut self, change: &Change, step: f64) {
+        self.d.axpy(step, &change.d, 1.0);
+        for (beta, change) in self.beta.iter_mut().zip(change.beta) {
+            *beta += step * change;
+        }
+        for (pair, change) in self.pairs.iter_mut().zip(&change.pairs) {
+            pair.slack += step * change.slack;
+            pair.dual += step * change.dual;
+        }
+        self.cone.s += change.s * step;
+        self.cone.z += change.z * step;
+    }
+}
+
+/// A change of the unknowns.
+struct Change {
+    d: DVector<f64>,
+    beta: [f64; 2],
+    pairs: Vec<Pair>,
+    s: Vector4<f64>,
+    z: Vector4<f64>,
+}
+
+impl Program<'_> {
+    fn variables(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// What each pair's constraint leaves at a point, in the order of pairs.
+    fn room(&self, d: &[f64], beta: [f64; 2], constant: bool, mut each: impl FnMut(f64)) {
+        let on = f64::from(u8::from(constant));
+        for row in self.rows {
+            let own: f64 = d[row.first..].iter().zip(&row.a).map(|(d, a)| d * a).sum();
+            let more = row.e * beta[row.border];
+            each(on * row.b[0] - own + more);
+            each(on * row.b[1] + own + more);
+        }
+        for ((d, lower), upper) in d.iter().zip(self.lower).zip(self.upper) {
+            each(on * upper - d);
+            each(d - on * lower);
+        }
+        beta.into_iter().for_each(&mut each);
+    }
+
+    /// The gradients of all constraints, each times its number, added up: by `d` and by `β`.
+    fn pull(&self, numbers: &[f64], out: &mut [f64]) -> [f64; 2] {
+        let mut by_beta = [0.0; 2];
+        let (rows, rest) = numbers.split_at(2 * self.rows.len());
+        for (row, pair) in self.rows.iter().zip(rows.chunks_exact(2)) {
+            let (both, net) = (pair[0] + pair[1], pair[0] - pair[1]);
+            for (out, a) in out[row.first..].iter_mut().zip(&row.a) {
+                *out += net * a;
+            }
+            by_beta[row.border] -= row.e * both;
+        }
+        let (bounds, beta) = rest.split_at(2 * self.variables());
+        for (out, pair) in out.iter_mut().zip(bounds.chunks_exact(2)) {
+            *out += pair[0] - pair[1];
+        }
+        [by_beta[0] - beta[0], by_beta[1] - beta[1]]
+    }
+
+    fn start(&self) -> State {
+        let n = self.variables();
+        let d = DVector::zeros(n);
+        let beta = self.start;
+        let length = self.error.norm();
+        let t = length + 0.1 * (1e-3 + length);
+        let mut pairs = Vec::with_capacity(2 * self.rows.len() + 2 * n + 2);
+        self.room(d.as_slice(), beta, true, |room| {
+            let slack = room.max(1e-4);
+            pairs.push(Pair { slack, dual: 1.0 / slack });
+        });
+        // Multipliers in proportion to these, half of the price of time in rows, and what is left in bounds.
+        let duals: Vec<f64> = pairs.iter().map(|pair| pair.dual).collect();
+        let mut unused = vec![0.0; n];
+        let shared = self.pull(&duals[..], &mut unused);
+        let mu = 0.5 * self.prices[0] / -shared[0];
+        for pair in &mut pairs {
+            pair.dual *= mu;
+        }
+        let last = pairs.len() - 2;
+        for k in 0..2 {
+            let own = pairs[last + k].dual;
+            let rows = -mu * shared[k] - own;
+            pairs[last + k].dual = own.max(self.prices[k] - rows);
+        }
+        let s = Vector4::new(t, self.error[0], self.error[1], self.error[2]);
+        let mut z = s;
+        z.fixed_rows_mut::<3>(1).neg_mut();
+        // On the central path, and with the norm's weight in front where there is room.
+        let z = z * (self.weight / t);
+        State { d, beta, pairs, cone: Cone { s, z } }
+    }
+
+    /// The minimum, unless rounding is in the way.
+    pub(super) fn minimise(&self) -> Option<Minimum> {
+        if self.error.len() != COMPONENTS {
+            return None;
+        }
+        let mut state = self.start();
+        let mut newton = Newton::new(self);
+        for _ in 0..ITERATIONS {
+            let gap = state.gap();
+            let residuals = self.residuals(&state);
+            let miss = residuals.d.amax() / self.prices[0];
+            if gap <= self.gap && miss <= FEASIBLE {
+                return Some(state.minimum());
+            }
+            let Some(change) = self.direction(&mut newton, &state, &residuals, gap) else {
+                let is_near = gap <= NEARLY * self.gap && miss <= NEARLY * FEASIBLE;
+                return is_near.then(|| state.minimum());
+            };
+            state.advance(&change, (FRACTION * state.room(&change)).min(1.0));
+        }
+        None
+    }
+
+    /// The corrected Newton step, unless rounding leaves none of any length.
+    fn direction(
+        &self,
+        newton: &mut Newton<'_>,
+        state: &State,
+        residuals: &Residuals,
+        gap: f64,
+    ) -> Option<Change> {
+        let scaling = state.cone.scaling()?;
+        newton.factorise(state, &scaling)?;
+        let mut system = System {
+            state,
+            scaling: &scaling,
+            residuals,
+            products: vec![0.0; state.pairs.len()],
+            target: 0.0,
+            bend: Vector4::zeros(),
+        };
+        let affine = newton.solve(&system, 0);
+        let ahead = state.room(&affine).min(1.0);
+        let pairs = state.pairs.iter().zip(&affine.pairs);
+        let after = pairs.map(|(p, c)| (p.slack + ahead * c.slack) * (p.dual + ahead * c.dual));
+        let in_cone = (state.cone.s + affine.s * ahead).dot(&(state.cone.z + affine.z * ahead));
+        let share = (after.sum::<f64>() + in_cone) / gap;
+        system.target = share.clamp(0.0, 1.0).powi(3) * gap / (state.pairs.len() + 1) as f64;
+        system.products = affine.pairs.iter().map(|change| change.slack * change.dual).collect();
+        system.bend = product(&scaling.inverse_times(&affine.s), &scaling.times(&affine.z));
+        let change = newton.solve(&system, usize::from(gap < REFINED * self.gap));
+        (state.room(&change) > SHORTEST).then_some(change)
+    }
+
+    fn residuals(&self, state: &State) -> Residuals {
+        let duals: Vec<f64> = state.pairs.iter().map(|pair| pair.dual).collect();
+        let mut by_d = DVector::zeros(self.variables());
+        let by_beta = self.pull(&duals, by_d.as_mut_slice());
+        for i in 0..3 {
+            for (by_d, slope) in by_d.iter_mut().zip(self.slopes.row(i)) {
+                *by_d -= state.cone.z[i + 1] * slope;
+            }
+        }
+        for (q, c) in self.curvature.directions.iter().zip(&self.curvature.along) {
+            by_d.axpy(c * q.dot(&state.d), q, 1.0);
+        }
+        let mut rows = Vec::with_capacity(state.pairs.len());
+        let mut slacks = state.pairs.iter();
+        self.room(state.d.as_slice(), state.beta, true, |room| {
+            rows.push(slacks.next().map_or(0.0, |pair| pair.slack) - room);
+        });
+        Residuals {
+            d: by_d,
+            beta: [self.prices[0] + by_beta[0], self.prices[1] + by_beta[1]],
+            t: self.weight - state.cone.z[0],
+            rows,
+        }
+    }
+}
+
+/// What optimality misses.
+struct Residuals {
+    d: DVector<f64>,
+    beta: [f64; 2],
+    t: f64,
+    rows: Vec<f64>,
+}
+
+/// A right-hand side of Newton's equations at a state.
+struct System<'a> {
+    state: &'a State,
+    scaling: &'a Scaling,
+    residuals: &'a Residuals,
+    /// Of each pair, and in the cone, the product of the changes of slack and multiplier that is to be made up for.
+    products: Vec<f64>,
+    bend: Vector4<f64>,
+    /// What each product of slack and multiplier is to be.
+    target: f64,
+}
+
+/// Newton's matrix and its factors.
+struct Newton<'a> {
+    program: &'a Program<'a>,
+    triangle: Triangle,
+    /// Columns of the border, row by row: the error's slopes, the curvature's directions; zero for time and excess.
+    border: Vec<f64>,
+    /// `U⁻ᵀ` times the border.
+    lower: Vec<f64>,
+    columns: usize,
+    small: Option<Cholesky<f64, Dyn>>,
+}
+
+impl<'a> Newton<'a> {
+    fn new(program: &'a Program<'a>) -> Self {
+        let n = program.variables();
+        let columns = 3 + program.curvature.along.len();
+        let extent = |row: &Row| row.a.iter().rposition(|a| *a != 0.0).map_or(0, |last| last + 1);
+        let width = program.rows.iter().map(extent).max().unwrap_or(1).max(1);
+        let mut border = vec![0.0; (n + BORDER) * columns];
+        for i in 0..n {
+            for k in 0..3 {
+                border[i * columns + k] = program.slopes[(k, i)];
+            }
+            for (k, q) in program.curvature.directions.iter().enumerate() {
+                border[i * columns + 3 + k] = q[i];
+            }
+        }
+        Self {
+            program,
+            triangle: Triangle::zeros(n, width),
+            lower: border.clone(),
+            border,
+            columns,
+            small: None,
+        }
+    }
+
+    fn factorise(&mut self, state: &State, scaling: &Scaling) -> Option<()> {
+        let program = self.program;
+        let (n, columns) = (program.variables(), self.columns);
+        self.triangle.clear();
+        let (rows, rest) = state.pairs.split_at(2 * program.rows.len());
+        let (bounds, betas) = rest.split_at(2 * n);
+        let ratio = |pair: &Pair| pair.dual / pair.slack;
+        let mut alone = [0.0; BORDER];
+        let mut next = 0;
+        let mut absorb_bounds = |triangle: &mut Triangle, before: usize| {
+            while next < before {
+                let pairs = &bounds[2 * next..2 * next + 2];
+                let mut entries = [0.0; WIDTH + BORDER];
+                entries[0] = (ratio(&pairs[0]) + ratio(&pairs[1])).sqrt();
+                triangle.absorb(next, entries);
+                next += 1;
+            }
+        };
+        for (row, pairs) in program.rows.iter().zip(rows.chunks_exact(2)) {
+            absorb_bounds(&mut self.triangle, row.first + 1);
+            // Two rows (a, −e) and (−a, −e) with weights p and q have the product of these.
+            let [p, q] = [ratio(&pairs[0]), ratio(&pairs[1])];
+            let (sum, net) = (p + q, p - q);
+            let root = sum.sqrt();
+            let mut entries = [0.0; WIDTH + BORDER];
+            for (entry, a) in entries.iter_mut().zip(&row.a) {
+                *entry = root * a;
+            }
+            entries[WIDTH + row.border] = -row.e * net / root;
+            self.triangle.absorb(row.first, entries);
+            alone[row.border] += row.e * row.e * 4.0 * p * q / sum;
+        }
+        absorb_bounds(&mut self.triangle, n);
+        for (k, pair) in betas.iter().enumerate() {
+            let mut entries = [0.0; BORDER];
+            entries[k] = (ratio(pair) + alone[k]).sqrt();
+            self.triangle.absorb_border(entries);
+        }
+        if !self.triangle.is_regular() {
+            return None;
+        }
+        self.lower.copy_from_slice(&self.border);
+        self.triangle.solve_transposed(&mut self.lower, columns);
+        // The small system in y, 3 of the cone and the rest of the curvature, with the other sign.
+        let mut small = DMatrix::zeros(columns, columns);
+        for row in self.lower.chunks_exact(columns) {
+            for j in 0..columns {
+                for i in j..columns {
+                    small[(i, j)] += row[i] * row[j];
+                }
+            }
+        }
+        for i in 0..3 {
+            for j in 0..=i {
+                small[(i, j)] += scaling.square(i + 1, j + 1);
+            }
+        }
+        for (k, c) in program.curvature.along.iter().enumerate() {
+            small[(3 + k, 3 + k)] += 1.0 / c;
+        }
+        self.small = Some(small.cholesky()?);
+        Some(())
+    }
+
+    /// The Newton step, so often corrected by what it misses.
+    fn solve(&self, system: &System<'_>, refinements: usize) -> Change {
+        let System { state, scaling, residuals, products, bend, target } = system;
+        let program = self.program;
+        let n = program.variables();
+        // Δλ = (rc + λ ρ + λ (A Δx)) / g
+        let constants: Vec<f64> = state
+            .pairs
+            .iter()
+            .zip(products)
+            .zip(&residuals.rows)
+            .map(|((pair, product), rho)| {
+                (target - product - pair.slack * pair.dual + pair.dual * rho) / pair.slack
+            })
+            .collect();
+        let mut f = DVector::zeros(n + BORDER);
+        let by_beta = program.pull(&constants, &mut f.as_mut_slice()[..n]);
+        for i in 0..n {
+            f[i] = -f[i] - residuals.d[i];
+        }
+        for k in 0..BORDER {
+            f[n + k] = -by_beta[k] - residuals.beta[k];
+        }
+        // Cone: Δs = W (λ \ rc) − W² Δz with y = −Δz.
+        let mut complement = -product(&scaling.lambda, &scaling.lambda) - bend;
+        complement[0] += *target;
+        let shift = scaling.times(&quotient(&scaling.lambda, &complement));
+        // z_0 + Δz_0 = W
+        let y0 = -residuals.t;
+        let mut g = DVector::zeros(self.columns);
+        for k in 0..3 {
+            g[k] = shift[k + 1] + scaling.square(k + 1, 0) * y0;
+        }
+        let (mut x, mut y) = self.solve_reduced(&f, &g);
+        for _ in 0..refinements {
+            let (r_f, r_g) = self.miss(system, [&f, &g], [&x, &y]);
+            let (more_x, more_y) = self.solve_reduced(&r_f, &r_g);
+            x += more_x;
+            y += more_y;
+        }
+        let beta = [x[n], x[n + 1]];
+        let d = x.rows(0, n).into_owned();
+        let z = Vector4::new(-y0, -y[0], -y[1], -y[2]);
+        let mut s = Vector4::zeros();
+        for k in 0..3 {
+            s[k + 1] = program.slopes.row(k).tr_dot(&d);
+        }
+        s[0] = shift[0]
+            + scaling.square(0, 0) * y0
+            + (0..3).map(|j| scaling.square(0, j + 1) * y[j]).sum::<f64>();
+        let mut pairs = Vec::with_capacity(state.pairs.len());
+        let mut at = 0;
+        program.room(d.as_slice(), beta, false, |more| {
+            let pair = state.pairs[at];
+            let slack = more - residuals.rows[at];
+            let dual =
+                (target - products[at] - pair.slack * pair.dual - pair.dual * slack) / pair.slack;
+            pairs.push(Pair { slack, dual });
+            at += 1;
+        });
+        Change { d, beta, pairs, s, z }
+    }
+
+    /// Solves `K x + Pᵀ y = f`, `P x − N y = g`.
+    fn solve_reduced(&self, f: &DVector<f64>, g: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+        let columns = self.columns;
+        let mut x = f.clone();
+        self.triangle.solve_transposed(x.as_mut_slice(), 1);
+        let mut small = -g;
+        for (row, x) in self.lower.chunks_exact(columns).zip(x.iter()) {
+            for (entry, own) in small.iter_mut().zip(row) {
+                *entry += own * x;
+            }
+        }
+        if let Some(factor) = &self.small {
+            factor.solve_mut(&mut small);
+        }
+        for (x, row) in x.iter_mut().zip(self.lower.chunks_exact(columns)) {
+            *x -= row.iter().zip(small.iter()).map(|(a, y)| a * y).sum::<f64>();
+        }
+        self.triangle.solve(x.as_mut_slice());
+        (x, small)
+    }
+
+    /// By how much a solution of the reduced system misses its right-hand side.
+    fn miss(
+        &self,
+        System { state, scaling, .. }: &System<'_>,
+        [f, g]: [&DVector<f64>; 2],
+        [x, y]: [&DVector<f64>; 2],
+    ) -> (DVector<f64>, DVector<f64>) {
+        let program = self.program;
+        let (columns, n) = (self.columns, program.variables());
+        let mut numbers = Vec::with_capacity(state.pairs.len());
+        let mut pairs = state.pairs.iter();
+        program.room(&x.as_slice()[..n], [x[n], x[n + 1]], false, |more| {
+            numbers.push(pairs.next().map_or(0.0, |pair| more * pair.dual / pair.slack));
+        });
+        let mut r_f = f.clone();
+        let by_beta = program.pull(&numbers, &mut r_f.as_mut_slice()[..n]);
+        for k in 0..BORDER {
+            r_f[n + k] += by_beta[k];
+        }
+        let mut r_g = g.clone();
+        for (i, row) in self.border.chunks_exact(columns).enumerate().take(n) {
+            for (k, entry) in row.iter().enumerate() {
+                r_f[i] -= entry * y[k];
+                r_g[k] -= entry * x[i];
+            }
+        }
+        for k in 0..3 {
+            for l in 0..3 {
+                r_g[k] += scaling.square(k + 1, l + 1) * y[l];
+            }
+        }
+        for (k, c) in program.curvature.along.iter().enumerate() {
+            r_g[3 + k] += y[3 + k] / c;
+        }
+        (r_f, r_g)
+    }
+}

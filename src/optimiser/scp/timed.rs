@@ -1,0 +1,207 @@
+//! The search on a [`Timed`](crate::search::Timed) cost, for many variables.
+//!
+//! Limits and time are in the model as they are, so nothing bends away from it but the error; no second derivatives are
+//! asked for, and the few directions in which curvature matters show themselves (see [`bends`](super::bends)).
+//!
+//! The error's weight begins small, as in the search on other costs. It grows where a step would leave most of the error
+//! for the sake of time, so a start that is far from its goal first reaches it and then hastens, and falls to a few times
+//! the error's multiplier once the error is gone: any larger weight would only make steps short.
+
+use nalgebra::DVector;
+
+use super::bends::{Bends, Curvature};
+use super::subproblem::Region;
+use super::timed_subproblem::{Cuts, Model, Solution};
+use super::{Ending, NARROW, SMALLEST, Scp, TAKE, WIDEN};
+use crate::search::{ErrorSlopes, Limits, Oracle, Stop, TimedWeights};
+
+/// A step that would leave more of the error than this share of it calls for a larger weight.
+const LEFT: f64 = 0.9;
+
+/// How near to its bound, the weight, the length of a multiplier is at it.
+const BOUND: f64 = 0.99;
+
+/// By how much the weight grows at a time, and how many times the multiplier's length it is when the error is gone.
+const GROWTH: f64 = 4.0;
+
+/// Below it an error is gone, as far as the weight is concerned.
+const GONE: f64 = 1e-3;
+
+/// How often the weight may fall.
+const FALLS: usize = 20;
+
+/// One start on its way.
+pub(super) struct Search<'a, 'b> {
+    settings: &'a Scp,
+    oracle: &'a mut Oracle<'b>,
+    weights: TimedWeights,
+    x: DVector<f64>,
+    here: (Limits, ErrorSlopes),
+    /// What the error weighs in the search.
+    weight: f64,
+    falls: usize,
+    radius: f64,
+    /// The error's multiplier.
+    nu: DVector<f64>,
+    bends: Bends,
+    cuts: Cuts,
+    last: Option<DVector<f64>>,
+}
+
+impl<'a, 'b> Search<'a, 'b> {
+    pub(super) fn new(
+        settings: &'a Scp,
+        oracle: &'a mut Oracle<'b>,
+        weights: TimedWeights,
+        start: &[f64],
+    ) -> Result<Self, Stop> {
+        let here = oracle.timing(start)?;
+        let first = settings.first_weight * weights.time * here.0.time;
+        Ok(Self {
+            weight: if first > 0.0 { weights.error.min(first) } else { weights.error },
+            falls: 0,
+            radius: settings.radius,
+            nu: DVector::zeros(here.1.value.len()),
+            x: DVector::from_column_slice(start),
+            bends: Bends::default(),
+            cuts: Cuts::default(),
+            last: None,
+            settings,
+            oracle,
+            weights,
+            here,
+        })
+    }
+
+    /// The weights of the search.
+    fn own_weights(&self) -> TimedWeights {
+        TimedWeights { error: self.weight, ..self.weights }
+    }
+
+    fn cost(&self, (limits, error): &(Limits, ErrorSlopes)) -> f64 {
+        self.own_weights().cost(limits, error)
+    }
+
+    /// Solves one subproblem and makes its step, or not.
+    pub(super) fn step(&mut self) -> Result<Option<Ending>, Stop> {
+        if self.radius < SMALLEST {
+            return Ok(Some(Ending::Stalled));
+        }
+        let region = Region::around(self.oracle.bounds(), &self.x, self.radius);
+        let curvature = self.bends.curvature(&self.nu);
+        let Some(step) = self.weighed(&region, &curvature)? else {
+            self.radius /= 4.0;
+            return Ok(None);
+        };
+        let here = self.cost(&self.here);
+        let promised = here - step.cost;
+        if promised <= self.settings.tolerance * here.abs() {
+            return Ok(self.settle(&step));
+        }
+        let (there, step) = self.advance(step, here - WIDEN * promised, &region, &curvature)?;
+        let kept = (here - self.cost(&there)) / promised;
+        let reach = region.reach(&step.d);
+        self.relax(&there, &step);
+        if kept >= TAKE {
+            self.x += &step.d;
+            self.cuts.move_by(&step.d);
+            self.here = there;
+        }
+        self.nu = step.nu;
+        self.last = Some(step.d);
+        self.radius = match kept {
+            kept if kept >= WIDEN && reach > 0.9 => (2.0 * self.radius).min(1.0),
+            kept if kept >= NARROW => self.radius,
+            kept if kept >= TAKE => self.radius / 2.0,
+            // Also where the cost is NaN.
+            _ => 0.35 * self.radius * reach.min(1.0),
+        };
+        Ok(None)
+    }
+
+    /// A step, with a weight of the error that does not leave most of it.
+    fn weighed(
+        &mut self,
+        region: &Region,
+        curvature: &Curvature,
+    ) -> Result<Option<Solution>, Stop> {
+        loop {
+            let error = self.here.1.value.clone();
+            let Some(step) = self.minimise(region, &error, curvature)? else { return Ok(None) };
+            let is_bound = step.nu.norm() > BOUND * self.weight;
+            if !is_bound || step.left <= LEFT * error.norm() || self.weight >= self.weights.error {
+                return Ok(Some(step));
+            }
+            self.weight = (GROWTH * self.weight).min(self.weights.error);
+        }
+    }
+
+    /// Lets the weight fall where the error is gone.
+    fn relax(&mut self, there: &(Limits, ErrorSlopes), step: &Solution) {
+        let enough = GROWTH * step.nu.norm();
+        if there.1.value.norm() < GONE && enough < self.weight && self.falls < FALLS {
+            let least = self.weights.time * there.0.time / 10.0;
+            self.weight = enough.max(least).min(self.weight);
+            self.falls += 1;
+        }
+    }
+
+    /// What to do where a step promises nothing.
+    fn settle(&mut self, step: &Solution) -> Option<Ending> {
+        let is_bound = step.nu.norm() > BOUND * self.weight;
+        if !is_bound || self.weight >= self.weights.error {
+            return Some(Ending::Optimal);
+        }
+        self.weight = (GROWTH * self.weight).min(self.weights.error);
+        self.radius = self.radius.max(self.settings.radius);
+        None
+    }
+
+    /// Makes a step; where its cost is above `enough`, the error bends away from its linearisation, and a step corrected
+    /// with the error found there may do better.
+    fn advance(
+        &mut self,
+        step: Solution,
+        enough: f64,
+        region: &Region,
+        curvature: &Curvature,
+    ) -> Result<((Limits, ErrorSlopes), Solution), Stop> {
+        let there = self.attempt(&step)?;
+        if self.cost(&there) <= enough {
+            return Ok((there, step));
+        }
+        let error = &there.1.value - &self.here.1.slopes * &step.d;
+        let Some(second) = self.minimise(region, &error, curvature)? else {
+            return Ok((there, step));
+        };
+        let corrected = self.attempt(&second)?;
+        let is_better = self.cost(&corrected) < self.cost(&there);
+        Ok(if is_better { (corrected, second) } else { (there, step) })
+    }
+
+    fn attempt(&mut self, step: &Solution) -> Result<(Limits, ErrorSlopes), Stop> {
+        let there = self.oracle.timing((&self.x + &step.d).as_slice())?;
+        self.bends.remember(&step.d, &there.1.slopes - &self.here.1.slopes);
+        Ok(there)
+    }
+
+    fn minimise(
+        &mut self,
+        region: &Region,
+        error: &DVector<f64>,
+        curvature: &Curvature,
+    ) -> Result<Option<Solution>, Stop> {
+        let model = Model {
+            weights: self.own_weights(),
+            here: self.cost(&self.here),
+            x: &self.x,
+            limits: &self.here.0,
+            error,
+            slopes: &self.here.1.slopes,
+            curvature,
+            region,
+            last: self.last.as_ref(),
+        };
+        model.minimise(self.oracle, &mut self.cuts)
+    }
+}

@@ -1,0 +1,341 @@
+//! The convex subproblem of the search on a [`Timed`](crate::search::Timed) cost.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SecondOrderConeT,
+    SolverStatus, ZeroConeT,
+};
+use nalgebra::{DMatrix, DVector};
+
+use super::bends::Curvature;
+use super::interior_point::{Minimum, Program, Row};
+use super::subproblem::{Region, Rows};
+use crate::search::{Limit, Limits, Oracle, Stop, TimedWeights};
+
+/// What a solution may miss of the least cost, as a share of the cost.
+const GAP: f64 = 1e-9;
+
+/// A limit is in the subproblem where over this many times the last step it may come so near to what bounds it.
+const STEPS: f64 = 4.0;
+const NEAR: f64 = 0.9;
+
+/// Share of what a step promises that limits which are not in the subproblem may take from it.
+const MISS: f64 = 0.03;
+
+/// The least such share, of the cost.
+const LEAST_MISS: f64 = 1e-10;
+
+/// Most subproblems to find the limits that matter.
+const ROUNDS: usize = 6;
+
+/// How near to what bounds it a limit is active.
+const ACTIVE: f64 = 1e-3;
+
+/// Limits whose slopes differ by no more than this share of the largest are one.
+const SAME: f64 = 1e-3;
+
+/// Limits that mattered in the last subproblem and are not the same at every point.
+#[derive(Default)]
+pub(super) struct Cuts(Vec<Limit>);
+
+impl Cuts {
+    /// Makes their values those at another point.
+    pub(super) fn move_by(&mut self, step: &DVector<f64>) {
+        for limit in &mut self.0 {
+            limit.value += limit.change(step);
+        }
+    }
+
+    fn keep(&mut self, limit: &Limit) {
+        let same = |known: &Limit| {
+            let largest = known.slopes.iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
+            let mut pairs = known.slopes.iter().zip(&limit.slopes);
+            (known.power, known.first) == (limit.power, limit.first)
+                && pairs.all(|(a, b)| (a - b).abs() <= SAME * largest)
+        };
+        if !self.0.iter().any(same) {
+            self.0.push(*limit);
+        }
+    }
+}
+
+/// What stands for the cost near a point. With `c = T³` and `u = c / c_0`, minimise over `d` in the region
+///
+/// ```text
+/// w_T T_0 u / 3 + w_r ‖r + R d‖ + w_s s + ½ dᵀ B d
+/// |ℓ_i + g_i · d| ≤ T_0^p_i (1 + p_i (u − 1) / 3)    p_i = 1, 2, 3
+/// |ℓ_i + g_i · d| ≤ 1 + s                            p_i = 0
+/// ```
+///
+/// Powers of `c` are concave, so their tangents, which stand for them, lie above.
+pub(super) struct Model<'a> {
+    pub(super) weights: TimedWeights,
+    /// The cost at the point.
+    pub(super) here: f64,
+    pub(super) x: &'a DVector<f64>,
+    pub(super) limits: &'a Limits,
+    /// `r`, or what corrects it.
+    pub(super) error: &'a DVector<f64>,
+    /// `R`.
+    pub(super) slopes: &'a DMatrix<f64>,
+    pub(super) curvature: &'a Curvature,
+    pub(super) region: &'a Region,
+    /// The last step, where there was one.
+    pub(super) last: Option<&'a DVector<f64>>,
+}
+
+/// A minimum of the model.
+pub(super) struct Solution {
+    pub(super) d: DVector<f64>,
+    /// The model's cost there, with the time and excess that all limits ask for.
+    pub(super) cost: f64,
+    /// `‖r + R d‖`.
+    pub(super) left: f64,
+    /// The error's multiplier.
+    pub(super) nu: DVector<f64>,
+}
+
+impl Model<'_> {
+    /// The minimum over all limits, unless no solver finds it: limits that a minimum over some of them breaks are added,
+    /// until it breaks none that matters.
+    pub(super) fn minimise(
+        &self,
+        oracle: &mut Oracle<'_>,
+        cuts: &mut Cuts,
+    ) -> Result<Option<Solution>, Stop> {
+        let all = self.limits.list.iter().chain(&cuts.0);
+        let mut list: Vec<Limit> = all.filter(|limit| self.is_near(limit)).copied().collect();
+        for round in 1.. {
+            let solve = || self.solve(&list).or_else(|| self.solve_by_clarabel(&list));
+            let Some(Minimum { d, nu }) = oracle.conic(solve)? else { return Ok(None) };
+            let ends = oracle.limits((self.x + &d).as_slice())?;
+            let asked = |limit: &Limit| limit.asks(limit.value + limit.change(&d));
+            let [mut excess, mut time] = [0.0_f64; 2];
+            for limit in &list {
+                let most = if limit.power == 0 { &mut excess } else { &mut time };
+                *most = most.max(asked(limit));
+            }
+            let left = (self.error + self.slopes * &d).norm();
+            let rest = self.weights.error * left + self.curvature.energy(&d);
+            let cost = |time: f64, excess: f64| {
+                self.weights.time * time + self.weights.excess * excess + rest
+            };
+            let promised = (self.here - cost(time, excess)).max(0.0);
+            let slack = MISS * promised + LEAST_MISS * self.here.abs();
+            let known = list.len();
+            if round < ROUNDS {
+                list.extend(ends.list.iter().filter_map(|limit| {
+                    let more = match limit.power {
+                        0 => self.weights.excess * (limit.asks(limit.value) - excess),
+                        _ => self.weights.time * (limit.asks(limit.value) - time),
+                    };
+                    let value = limit.value - limit.change(&d);
+                    (more > slack).then_some(Limit { value, ..*limit })
+                }));
+            }
+            if list.len() == known {
+                let active = |limit: &&Limit| match limit.power {
+                    0 => asked(limit) > excess - ACTIVE,
+                    _ => asked(limit) > time * (1.0 - ACTIVE),
+                };
+                cuts.0.clear();
+                let own = list.iter().filter(|limit| limit.id.is_none()).filter(active);
+                own.for_each(|limit| cuts.keep(limit));
+                let cost = cost(ends.time, ends.excess);
+                return Ok(Some(Solution { d, cost, left, nu }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether a limit may matter, judged by the last step.
+    fn is_near(&self, limit: &Limit) -> bool {
+        let Some(last) = self.last else { return true };
+        let own = last.as_slice()[limit.first..].iter().zip(&limit.slopes);
+        let reach: f64 = own.map(|(d, slope)| (d * slope).abs()).sum();
+        limit.value.abs() + STEPS * reach > NEAR * self.scale(limit)
+    }
+
+    /// `T_0^p`.
+    fn scale(&self, limit: &Limit) -> f64 {
+        self.limits.time.powi(i32::from(limit.power))
+    }
+
+    /// The limits as rows whose largest entry is one.
+    fn rows(&self, list: &[Limit]) -> Vec<Row> {
+        let to_row = |limit: &Limit| {
+            let scale = self.scale(limit);
+            let (value, by_u) = (limit.value / scale, f64::from(limit.power) / 3.0);
+            let largest = limit.slopes.iter().fold(0.0, |most: f64, g| most.max(g.abs())) / scale;
+            let unit = largest.max(by_u);
+            let (border, e) = if limit.power == 0 { (1, 1.0) } else { (0, by_u) };
+            Row {
+                first: limit.first,
+                a: limit.slopes.map(|slope| slope / scale / unit),
+                border,
+                e: e / unit,
+                b: [(1.0 - by_u - value) / unit, (1.0 - by_u + value) / unit],
+            }
+        };
+        let mut rows: Vec<Row> = list.iter().map(to_row).collect();
+        rows.sort_by_key(|row| row.first);
+        rows
+    }
+
+    fn program<'a>(&'a self, rows: &'a [Row]) -> Program<'a> {
+        Program {
+            rows,
+            lower: &self.region.lower,
+            upper: &self.region.upper,
+            prices: [self.weights.time * self.limits.time / 3.0, self.weights.excess],
+            // Room for every row at `d = 0`.
+            start: [1.2, 0.2 + self.limits.excess],
+            weight: self.weights.error,
+            error: self.error,
+            slopes: self.slopes,
+            curvature: self.curvature,
+            gap: GAP * self.here.abs(),
+        }
+    }
+
+    fn solve(&self, list: &[Limit]) -> Option<Minimum> {
+        self.program(&self.rows(list)).minimise()
+    }
+
+    /// The same by a general solver, which takes several times as long.
+    fn solve_by_clarabel(&self, list: &[Limit]) -> Option<Minimum> {
+        let rows = self.rows(list);
+        let Program { prices, weight, curvature, .. } = self.program(&rows);
+        let (n, m) = (self.x.len(), curvature.along.len());
+        // Step, time and excess, norm of the error, the step's components along the curvature's directions.
+        let (t, size) = (n + 2, n + 3 + m);
+        let mut q = vec![0.0; size];
+        q[n..n + 2].copy_from_slice(&prices);
+        q[t] = weight;
+        let mut all = Rows::default();
+        for row in &rows {
+            for (sign, b) in [1.0, -1.0].into_iter().zip(row.b) {
+                let entries = row.a.iter().enumerate().filter(|(_, a)| **a != 0.0);
+                let entries = entries.map(|(k, a)| (row.first + k, sign * a));
+                all.push(entries.chain([(n + row.border, -row.e)]), b);
+            }
+        }
+        let Region { lower, upper, .. } = self.region;
+        for (j, (lower, upper)) in lower.iter().zip(upper).enumerate() {
+            all.push([(j, 1.0)], *upper);
+            all.push([(j, -1.0)], -*lower);
+        }
+        for k in 0..2 {
+            all.push([(n + k, -1.0)], 0.0);
+        }
+        let inequalities = all.b.len();
+        all.push([(t, -1.0)], 0.0);
+        for (value, slopes) in self.error.iter().zip(self.slopes.row_iter()) {
+            all.push(slopes.iter().enumerate().map(|(j, slope)| (j, -slope)), *value);
+        }
+        let norm = 1 + self.error.len();
+        for (i, direction) in curvature.directions.iter().enumerate() {
+            all.push(direction.iter().copied().enumerate().chain([(t + 1 + i, -1.0)]), 0.0);
+        }
+        let cones = [NonnegativeConeT(inequalities), SecondOrderConeT(norm), ZeroConeT(m)];
+        let settings = DefaultSettings {
+            verbose: false,
+            tol_gap_abs: GAP,
+            tol_gap_rel: GAP,
+            tol_feas: GAP,
+            ..DefaultSettings::default()
+        };
+        let places: Vec<usize> = (t + 1..size).collect();
+        let along = curvature.along.clone();
+        let p = CscMatrix::new_from_triplets(size, size, places.clone(), places, along);
+        let a = all.matrix(size);
+        let mut solver = DefaultSolver::new(&p, &q, &a, &all.b, &cones, settings).ok()?;
+        solver.solve();
+        let solution = &solver.solution;
+        if !matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
+            return None;
+        }
+        // Within the region to the last bit.
+        let d = DVector::from_column_slice(&solution.x[..n]).sup(lower).inf(upper);
+        let nu = &solution.z[inequalities + 1..inequalities + norm];
+        Some(Minimum { d, nu: -DVector::from_column_slice(nu) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::bends::Bends;
+    use super::*;
+    use crate::search::Bounds;
+
+    /// A program like those of splines: jerks as third differences, some rates, a wide and a narrow region.
+    fn both(pieces: usize, radius: f64, weight: f64) -> [Solution; 2] {
+        let n = pieces;
+        let wave = |i: usize, k: f64| f64::sin(k * i as f64 + 0.3);
+        let mut list = Vec::new();
+        for i in 0..n - 3 {
+            let slopes = [-1.0, 3.0, -3.0, 1.0, 0.0, 0.0].map(|entry| entry * 1e4);
+            list.push(Limit { id: None, power: 3, value: 180.0 * wave(i, 1.7), first: i, slopes });
+            let slopes = [1.0, -1.0, 0.0, 0.0, 0.0, 0.0].map(|entry| entry * 30.0);
+            list.push(Limit { id: None, power: 1, value: 5.0 * wave(i, 0.7), first: i, slopes });
+            let slopes = [0.2, 0.6, 0.2, 0.0, 0.0, 0.0];
+            list.push(Limit { id: None, power: 0, value: 0.99 * wave(i, 0.2), first: i, slopes });
+        }
+        let asked = |timed: bool| {
+            let own = list.iter().filter(move |limit| (limit.power > 0) == timed);
+            own.map(|limit| limit.asks(limit.value)).fold(0.0, f64::max)
+        };
+        let limits = Limits { time: asked(true), excess: asked(false), list: list.clone() };
+        let x = DVector::zeros(n);
+        let mut bends = Bends::default();
+        for k in 1..5 {
+            let step = DVector::from_fn(n, |i, _| 0.01 * wave(i, 0.4 * f64::from(k)));
+            bends.remember(
+                &step,
+                DMatrix::from_fn(3, n, |j, i| f64::from(k) * step[i] / (1.0 + j as f64)),
+            );
+        }
+        let model = Model {
+            weights: TimedWeights { time: 0.1, error: weight, excess: 100.0 },
+            here: 1.0,
+            x: &x,
+            limits: &limits,
+            error: &DVector::from_vec(vec![0.02, -0.03, 0.01]),
+            slopes: &DMatrix::from_fn(3, n, |j, i| 0.05 * wave(i, 0.1 + 0.2 * j as f64)),
+            curvature: &bends.curvature(&DVector::from_vec(vec![0.5, 0.4, 0.2])),
+            region: &Region::around(&Bounds::cube(n, [-1.0, 1.0]), &x, radius),
+            last: None,
+        };
+        [model.solve(&list), model.solve_by_clarabel(&list)].map(|found| {
+            let Minimum { d, nu } = found.unwrap();
+            // The least `u` and `s` that the model's limits leave.
+            let [mut u, mut s] = [0.0_f64; 2];
+            for limit in &list {
+                let (value, p) = (limit.value + limit.change(&d), f64::from(limit.power));
+                if limit.power == 0 {
+                    s = s.max(limit.asks(value));
+                } else {
+                    u = u.max(1.0 + (value.abs() / model.scale(limit) - 1.0) * 3.0 / p);
+                }
+            }
+            let left = (model.error + model.slopes * &d).norm();
+            let rest = weight * left + model.curvature.energy(&d);
+            let cost = 0.1 * limits.time / 3.0 * u + 100.0 * s + rest;
+            Solution { d, cost, left, nu }
+        })
+    }
+
+    /// Two interior-point methods that have nothing in common but the program find the same minimum.
+    #[test]
+    fn our_own_solver_agrees_with_clarabel() {
+        for (pieces, radius, weight) in [(12, 0.5, 3.0), (40, 0.1, 50.0), (90, 0.02, 0.4)] {
+            let [own, general] = both(pieces, radius, weight);
+            assert!(own.d.amax() <= radius * (1.0 + 1e-12), "{}", own.d.amax());
+            let [a, b] = [own.cost, general.cost];
+            assert!((a - b).abs() < 1e-6 * b.abs(), "{pieces} pieces: {a} and {b}");
+            let miss = (&own.nu - &general.nu).norm();
+            assert!(miss < 1e-3 * general.nu.norm(), "{pieces}: {} and {}", own.nu, general.nu);
+            assert!(own.nu.norm() <= weight * (1.0 + 1e-6), "{}", own.nu.norm());
+        }
+    }
+}

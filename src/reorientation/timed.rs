@@ -1,0 +1,88 @@
+//! The time-free cost over families whose derivatives are linear in their coefficients, as a [`Timed`] one.
+
+use std::f64::consts::PI;
+
+use super::fitness::Reorientation;
+use super::formulation::Formulated;
+use crate::search::{ErrorSlopes, Failure, Limit, Limits, Problem as _, Rng, Timed, TimedWeights};
+use crate::trajectory::{Family, Site};
+
+/// Sines that a random start is made of.
+const SINES: u32 = 3;
+
+/// The typical amplitude of the first, as a share of half a variable's box.
+const AMPLITUDE: f64 = 0.1;
+
+/// Orders of derivatives that have limits or a range.
+const ORDERS: usize = 4;
+
+impl<F: Family> Reorientation<F> {
+    /// What the shortest duration follows from, and by how much joints leave their ranges.
+    fn limits(&self, coefficients: &[f64]) -> Limits {
+        let mut samples = self.workspace().samples;
+        let (task, family, tables) = (self.task(), self.family(), self.tables());
+        family.sample::<f64>(&tables.sampler, coefficients, &mut samples);
+        let mut limits = Limits::default();
+        family.sites(&samples, &mut |site: &Site| {
+            let (middle, most) = match site.order {
+                0 => {
+                    let [lower, upper] = tables.ranges[site.joint];
+                    (f64::midpoint(lower, upper), (upper - lower) / 2.0)
+                }
+                order => (0.0, task.limits.0[site.joint][order - 1]),
+            };
+            let track =
+                |place: usize| (place * tables.ranges.len() + site.joint) * ORDERS + site.order;
+            let limit = Limit {
+                id: site.place.map(|place| track(place) as u32),
+                power: site.order as u8,
+                value: (site.value - middle) / most,
+                first: site.first,
+                slopes: site.slopes.map(|slope| slope / most),
+            };
+            // Start and goal are in the range but for rounding, and no path changes them.
+            if limit.slopes.iter().any(|slope| *slope != 0.0) {
+                let asked = limit.asks(limit.value);
+                let all = if limit.power == 0 { &mut limits.excess } else { &mut limits.time };
+                *all = all.max(asked);
+                limits.list.push(limit);
+            }
+        });
+        limits
+    }
+}
+
+impl<F: Family> Timed for Formulated<F> {
+    fn limits(&self, x: &[f64]) -> Result<Limits, Failure> {
+        Ok(self.task().limits(x))
+    }
+
+    fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure> {
+        Ok(self.task().error_slopes(x))
+    }
+
+    fn weights(&self) -> TimedWeights {
+        self.task().terms().timed()
+    }
+
+    /// Every joint leaves the straight path by a few slow sines, at rest at both ends.
+    fn start(&self, rng: &mut Rng) -> Vec<f64> {
+        let (family, bounds) = (self.task().family(), self.bounds());
+        let mut x: Vec<f64> = vec![0.0; family.dimension()];
+        for joint in 0..family.joints() {
+            let amplitudes: Vec<f64> =
+                (1..=SINES).map(|m| AMPLITUDE * rng.normal() / f64::from(m)).collect();
+            let own = family.coefficients_of(joint);
+            let count = own.len();
+            let variables = x[own.clone()].iter_mut().zip(bounds.iter().skip(own.start));
+            for (k, (value, [lower, upper])) in variables.enumerate() {
+                let tau = (k + 1) as f64 / (count + 1) as f64;
+                let window = 16.0 * tau * tau * (1.0 - tau) * (1.0 - tau);
+                let sine = |(m, a): (u32, &f64)| a * (PI * f64::from(m) * tau).sin();
+                let wave: f64 = (1..).zip(&amplitudes).map(sine).sum();
+                *value = (window * wave * (upper - lower) / 2.0).clamp(lower, upper);
+            }
+        }
+        x
+    }
+}

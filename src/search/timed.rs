@@ -1,0 +1,145 @@
+//! Costs whose time follows from linear limits.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::evaluation::Evaluation;
+use super::failure::Failure;
+use super::problem::Problem;
+use super::rng::Rng;
+
+/// A cost `w_T T(x) + w_r ‖r(x)‖ + w_s s(x)` of a smooth error `r`, the least time `T ≥ 0` and the least excess
+/// `s ≥ 0` that functions linear in `x`, each of few variables, leave:
+///
+/// ```text
+/// |ℓ_i(x)| ≤ T^p_i    p_i = 1, 2 or 3
+/// |ℓ_i(x)| ≤ 1 + s    p_i = 0
+/// ```
+///
+/// There may be infinitely many `ℓ_i`, such as the values of a polynomial at all places of an interval. Time and excess
+/// are those of all of them.
+pub trait Timed: Problem {
+    /// Time and excess of a point, and the `ℓ_i` that they may follow from there.
+    fn limits(&self, x: &[f64]) -> Result<Limits, Failure>;
+
+    /// The error at a point. With [`limits`](Self::limits) its cost is that of [`evaluate`](Problem::evaluate), to
+    /// rounding.
+    fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure>;
+
+    /// The same at every point.
+    fn weights(&self) -> TimedWeights;
+
+    /// A random point to search from: points drawn variable by variable may all be poor, where neighbours belong together.
+    fn start(&self, rng: &mut Rng) -> Vec<f64>;
+}
+
+/// Weights of time, error and excess; finite and not negative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimedWeights {
+    /// `w_T`.
+    pub time: f64,
+    /// `w_r`.
+    pub error: f64,
+    /// `w_s`.
+    pub excess: f64,
+}
+
+/// `r` at a point.
+#[derive(Debug, Clone)]
+pub struct ErrorSlopes {
+    /// `r`.
+    pub value: DVector<f64>,
+    /// `∂r/∂x`, one row per component.
+    pub slopes: DMatrix<f64>,
+}
+
+/// What limits of a point's time and excess are known.
+#[derive(Debug, Clone, Default)]
+pub struct Limits {
+    /// `T`.
+    pub time: f64,
+    /// `s`.
+    pub excess: f64,
+    /// Some `ℓ_i`, with the largest of all among them.
+    pub list: Vec<Limit>,
+}
+
+/// A function linear in the variables.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// The same at every point for the same function. Without one it is unlike all others.
+    pub id: Option<u32>,
+    /// `p`.
+    pub power: u8,
+    /// `ℓ` at the point.
+    pub value: f64,
+    /// The first variable that it follows.
+    pub first: usize,
+    /// Its slopes by the variables from there on, filled up with zeros.
+    pub slopes: [f64; Self::MOST],
+}
+
+impl Limit {
+    /// The most variables in a row that a limit may follow.
+    pub const MOST: usize = 6;
+
+    /// Its change over a step.
+    pub fn change(&self, step: &DVector<f64>) -> f64 {
+        let own = &step.as_slice()[self.first..];
+        own.iter().zip(&self.slopes).map(|(d, slope)| d * slope).sum()
+    }
+
+    /// The same for `−ℓ`.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        Self { value: -self.value, slopes: self.slopes.map(|slope| -slope), ..self }
+    }
+
+    /// The time, or for a power of zero the excess, that it asks for with another value.
+    pub fn asks(&self, value: f64) -> f64 {
+        let value = value.abs();
+        match self.power {
+            0 => value - 1.0,
+            1 => value,
+            2 => value.sqrt(),
+            _ => value.cbrt(),
+        }
+    }
+}
+
+impl TimedWeights {
+    /// `J`.
+    pub fn cost(&self, limits: &Limits, error: &ErrorSlopes) -> f64 {
+        self.time * limits.time + self.error * error.value.norm() + self.excess * limits.excess
+    }
+
+    /// Cost and violation.
+    pub fn evaluation(&self, limits: &Limits, error: &ErrorSlopes) -> Evaluation {
+        Evaluation::new(self.cost(limits, error), limits.excess)
+    }
+}
+
+impl ErrorSlopes {
+    /// Whether slopes are of so many variables.
+    pub(super) fn check(&self, variables: usize) -> Result<(), Failure> {
+        let (expected, found) = ((self.value.len(), variables), self.slopes.shape());
+        if found == expected {
+            return Ok(());
+        }
+        let [found, expected] = [found, expected].map(|(m, n)| format!("{m} × {n}"));
+        Err(format!("found slopes of an error of {found}, expected {expected}").into())
+    }
+}
+
+impl Limits {
+    /// Whether they are of so many variables.
+    pub(super) fn check(&self, variables: usize) -> Result<(), Failure> {
+        for Limit { first, slopes, .. } in &self.list {
+            let last = slopes.iter().rposition(|slope| *slope != 0.0).map_or(*first, |i| first + i);
+            if last >= variables {
+                let expected = format!("expected one of {variables}");
+                return Err(format!("found a limit on variable {last}, {expected}").into());
+            }
+        }
+        Ok(())
+    }
+}
