@@ -32,12 +32,12 @@ pub(super) struct Plan {
     /// Family of motions: the file's sine polynomials, or splines, which are faster and reach more goals
     #[arg(long, value_name = "NAME", default_value = "sine-polynomial")]
     family: FamilyName,
-    /// Pieces of a spline
-    #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u16).range(4..=1000))]
-    pieces: u16,
-    /// Degree of a spline: 3 has a constant jerk on each piece, 4 a continuous one, 5 a smooth one
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u8).range(3..=5))]
-    degree: u8,
+    /// Pieces of a spline; without it, 40
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(4..=1000))]
+    pieces: Option<u16>,
+    /// Degree of a spline: 3 has a constant jerk on each piece, 4, which is the default, a continuous one, 5 a smooth one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(3..=5))]
+    degree: Option<u8>,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -62,6 +62,10 @@ enum FamilyName {
     /// Splines over equal pieces.
     Spline,
 }
+
+/// Pieces and degree of a spline, where they are not said.
+const PIECES: usize = 40;
+const DEGREE: usize = 4;
 
 /// Starts that `scp` follows over splines.
 const SPLINE_STARTS: usize = 4;
@@ -110,6 +114,7 @@ struct Found<F: Family> {
 impl Plan {
     pub(super) fn execute(self) -> Result<(), CliError> {
         self.files.check()?;
+        self.check_family()?;
         let settings = find_optimiser(&self.optimiser)?;
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;
         let file = TaskFile::read(&document)?;
@@ -145,6 +150,23 @@ impl Plan {
         self.finish(&found)
     }
 
+    /// Whether all options are for the family.
+    fn check_family(&self) -> Result<(), CliError> {
+        let is_spline = self.family == FamilyName::Spline;
+        let strange = [
+            ("--pieces", self.pieces.is_some() && !is_spline, "spline"),
+            ("--degree", self.degree.is_some() && !is_spline, "spline"),
+            ("--entry", self.entry && is_spline, "sine-polynomial"),
+        ];
+        match strange.into_iter().find(|(_, is_strange, _)| *is_strange) {
+            Some((option, _, family)) => Err(CliError::Usage {
+                message: format!("found {option}, which is for `--family {family}` alone"),
+                help: None,
+            }),
+            None => Ok(()),
+        }
+    }
+
     /// The same over splines.
     fn plan_spline(
         &self,
@@ -152,8 +174,11 @@ impl Plan {
         problem: &Reorientation,
         refused: impl Fn(BoundsError) -> InputError,
     ) -> Result<(), CliError> {
-        let (task, pieces, degree) =
-            (problem.task().clone(), usize::from(self.pieces), usize::from(self.degree));
+        let (task, pieces, degree) = (
+            problem.task().clone(),
+            self.pieces.map_or(PIECES, usize::from),
+            self.degree.map_or(DEGREE, usize::from),
+        );
         let family = Spline::new(&task.start.joints, &task.goal.joints, pieces, degree);
         let problem = Reorientation::over(task, family, problem.accuracy());
         let formulated = Formulated::free_form(Arc::new(problem)).map_err(refused)?;

@@ -11,7 +11,7 @@ use crate::trajectory::{Family, Site};
 const SINES: u32 = 3;
 
 /// The typical amplitude of the first, as a share of half a variable's box.
-const AMPLITUDE: f64 = 0.1;
+const AMPLITUDE: f64 = 0.05;
 
 /// Orders of derivatives that have limits or a range.
 const ORDERS: usize = 4;

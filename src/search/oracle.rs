@@ -8,10 +8,10 @@ use nalgebra::DMatrix;
 use super::evaluation::Evaluation;
 use super::failure::Failure;
 use super::points::{Bounds, Points};
-use super::problem::{Composite, Problem};
+use super::problem::{Composite, Problem, Timed};
 use super::rng::Rng;
 use super::terms::{Linearisation, Multipliers, Shape};
-use super::timed::{ErrorSlopes, Limits, Timed, TimedWeights};
+use super::timed::{ErrorSlopes, Limits, TimedWeights};
 
 /// Why an optimiser has to stop.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

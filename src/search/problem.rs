@@ -5,8 +5,9 @@ use nalgebra::DMatrix;
 use super::evaluation::Evaluation;
 use super::failure::Failure;
 use super::points::{Bounds, Points};
+use super::rng::Rng;
 use super::terms::{Linearisation, Multipliers};
-use super::timed::Timed;
+use super::timed::{ErrorSlopes, Limits, TimedWeights};
 
 /// A box-bounded minimisation problem.
 pub trait Problem: Send + Sync {
@@ -55,4 +56,29 @@ pub trait Composite: Problem {
     /// Second derivative of `Σ_k Σ_i λ_ki v_ki` at `x`, `n × n` for `n` variables and symmetric, to a few digits;
     /// the pieces are ones that [`linearise`](Self::linearise) named there.
     fn curvature(&self, x: &[f64], multipliers: &Multipliers) -> Result<DMatrix<f64>, Failure>;
+}
+
+/// A cost `w_T T(x) + w_r ‖r(x)‖ + w_s s(x)` of a smooth error `r`, the least time `T ≥ 0` and the least excess
+/// `s ≥ 0` that functions linear in `x`, each of few variables, leave:
+///
+/// ```text
+/// |ℓ_i(x)| ≤ T^p_i    p_i = 1, 2 or 3
+/// |ℓ_i(x)| ≤ 1 + s    p_i = 0
+/// ```
+///
+/// There may be infinitely many `ℓ_i`, such as the values of a polynomial at all places of an interval. Time and excess
+/// are those of all of them.
+pub trait Timed: Problem {
+    /// Time and excess of a point, and the `ℓ_i` that they may follow from there.
+    fn limits(&self, x: &[f64]) -> Result<Limits, Failure>;
+
+    /// The error at a point. With [`limits`](Self::limits) its cost is that of [`evaluate`](Problem::evaluate), to
+    /// rounding.
+    fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure>;
+
+    /// The same at every point.
+    fn weights(&self) -> TimedWeights;
+
+    /// A random point to search from: points drawn variable by variable may all be poor, where neighbours belong together.
+    fn start(&self, rng: &mut Rng) -> Vec<f64>;
 }

@@ -1,36 +1,9 @@
-//! Costs whose time follows from linear limits.
+//! What costs follow from whose time follows from linear limits.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::evaluation::Evaluation;
 use super::failure::Failure;
-use super::problem::Problem;
-use super::rng::Rng;
-
-/// A cost `w_T T(x) + w_r ‖r(x)‖ + w_s s(x)` of a smooth error `r`, the least time `T ≥ 0` and the least excess
-/// `s ≥ 0` that functions linear in `x`, each of few variables, leave:
-///
-/// ```text
-/// |ℓ_i(x)| ≤ T^p_i    p_i = 1, 2 or 3
-/// |ℓ_i(x)| ≤ 1 + s    p_i = 0
-/// ```
-///
-/// There may be infinitely many `ℓ_i`, such as the values of a polynomial at all places of an interval. Time and excess
-/// are those of all of them.
-pub trait Timed: Problem {
-    /// Time and excess of a point, and the `ℓ_i` that they may follow from there.
-    fn limits(&self, x: &[f64]) -> Result<Limits, Failure>;
-
-    /// The error at a point. With [`limits`](Self::limits) its cost is that of [`evaluate`](Problem::evaluate), to
-    /// rounding.
-    fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure>;
-
-    /// The same at every point.
-    fn weights(&self) -> TimedWeights;
-
-    /// A random point to search from: points drawn variable by variable may all be poor, where neighbours belong together.
-    fn start(&self, rng: &mut Rng) -> Vec<f64>;
-}
 
 /// Weights of time, error and excess; finite and not negative.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -82,6 +82,26 @@ fn plan_promises_its_fields() {
     assert_eq!(plan["coefficients"], again["coefficients"]);
 }
 
+/// 5.6150 s: see `tests/splines.rs`.
+#[test]
+fn plan_finds_free_form_motions() {
+    let folder = Folder::new();
+    let args = ["plan", "--family", "spline", "--pieces", "20", "--degree", "3", "--json"];
+    let plan = json(&folder, &args);
+    assert_eq!(
+        (&plan["family"], &plan["pieces"], &plan["degree"]),
+        (&"spline".into(), &20.into(), &3.into())
+    );
+    assert!(plan.get("terms").is_none() && plan["best_known_j"].is_null());
+    assert!(plan["t_f"].as_f64().unwrap() <= 5.6363, "{}", plan["t_f"]);
+    assert!(plan["residual_deg"].as_f64().unwrap() < 1e-6, "{}", plan["residual_deg"]);
+    let rows = plan["coefficients"].as_array().unwrap();
+    assert_eq!((rows.len(), rows[0].as_array().unwrap().len()), (6, 17));
+    let output = folder.run(&["plan", "--pieces", "20"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--family spline"), "{}", stderr(&output));
+}
+
 /// 0.7818485825 is the entry for the paper's task in `results/best-known.toml`.
 #[test]
 fn plan_compares_with_the_best_known() {

@@ -20,6 +20,9 @@ const FRACTION: f64 = 0.99;
 /// A shorter step is none.
 const SHORTEST: f64 = 1e-10;
 
+/// The least price of time, as a share of that of the error, that others are compared with.
+const LEAST_PRICE: f64 = 1e-6;
+
 /// What the gradient may miss, as a share of the price of time.
 const FEASIBLE: f64 = 1e-7;
 
@@ -244,6 +247,11 @@ impl Program<'_> {
         self.lower.len()
     }
 
+    /// The price of time, unless it is next to nothing beside that of the error.
+    fn scale(&self) -> f64 {
+        self.prices[0].max(LEAST_PRICE * self.weight)
+    }
+
     /// What each pair's constraint leaves at a point, in the order of pairs.
     fn room(&self, d: &[f64], beta: [f64; 2], constant: bool, mut each: impl FnMut(f64)) {
         let on = f64::from(u8::from(constant));
@@ -293,7 +301,7 @@ impl Program<'_> {
         let duals: Vec<f64> = pairs.iter().map(|pair| pair.dual).collect();
         let mut unused = vec![0.0; n];
         let shared = self.pull(&duals[..], &mut unused);
-        let mu = 0.5 * self.prices[0] / -shared[0];
+        let mu = 0.5 * self.scale() / -shared[0];
         for pair in &mut pairs {
             pair.dual *= mu;
         }
@@ -321,7 +329,7 @@ impl Program<'_> {
         for _ in 0..ITERATIONS {
             let gap = state.gap();
             let residuals = self.residuals(&state);
-            let miss = residuals.d.amax() / self.prices[0];
+            let miss = residuals.d.amax() / self.scale();
             if gap <= self.gap && miss <= FEASIBLE {
                 return Some(state.minimum());
             }

@@ -14,6 +14,8 @@
 //! the same few points, whatever their `r`; so a start that ends there is followed once more, with
 //! the problem's own weights throughout.
 //!
+//! On a [`Timed`](crate::search::Timed) cost the steps are others, for many variables: see `timed.rs`.
+//!
 //! A start has been followed to its end when, with the problem's own weights, a step promises next to
 //! nothing and the Lagrangian is level, the first-order condition of a minimum.
 
