@@ -47,10 +47,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let (problem, _) = TaskFile::read(&document)?.build(&document)?;
     println!(
-        "{:>6} {:>9} {:>9} {:>8} {:>8} {:>8} {:>9} {:>9} {:>11}",
+        "{:>6} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>9} {:>9} {:>11}",
         "pieces",
         "least",
         "median",
+        "most",
         "at least",
         "reached",
         "optimal",
@@ -105,8 +106,9 @@ fn tell(pieces: usize, runs: &[Run]) {
     let reached = runs.iter().filter(|run| run.reached);
     let least = reached.map(|run| run.duration).fold(f64::INFINITY, f64::min);
     println!(
-        "{pieces:>6} {least:>9.5} {:>9.5} {:>8} {:>8} {:>8} {:>9.3} {:>9.0} {:>11.2}",
+        "{pieces:>6} {least:>9.5} {:>9.5} {:>9.5} {:>8} {:>8} {:>8} {:>9.3} {:>9.0} {:>11.2}",
         median(&|run| run.duration),
+        runs.iter().map(|run| run.duration).fold(0.0, f64::max),
         count(&|run| run.reached && run.duration <= least * (1.0 + SAME)),
         count(&|run| run.reached),
         count(&|run| run.optimal),
