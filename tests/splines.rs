@@ -7,7 +7,7 @@ use driftless::momentum::base_twist;
 use driftless::optimiser::{Ending, Scp};
 use driftless::reorientation::{Accuracy, Formulated, Reorientation, TaskFile};
 use driftless::robot::Robot;
-use driftless::search::{Limit, Oracle, Problem as _, Rng, Watch};
+use driftless::search::{LinearLimit, Oracle, Problem as _, Rng, Watch};
 use driftless::task::Task;
 use driftless::trajectory::{Curve as _, Family as _, Spline};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -107,13 +107,13 @@ fn limits_and_slopes_are_those_of_the_cost() {
                 let miss = (slope - error.slopes.column(k)).amax();
                 assert!(miss < 1e-8, "{degree}, variable {k}: {miss}");
                 // Those that are there at every point are linear.
-                let fixed = |list: &[Limit]| -> Vec<Limit> {
+                let fixed = |list: &[LinearLimit]| -> Vec<LinearLimit> {
                     list.iter().filter(|limit| limit.id.is_some()).copied().collect()
                 };
                 let all = [&limits.list, &up, &down].map(|list| fixed(list));
                 for ((here, up), down) in all[0].iter().zip(&all[1]).zip(&all[2]) {
                     assert_eq!(here.id, up.id);
-                    let own = k.checked_sub(here.first).filter(|i| *i < Limit::MOST);
+                    let own = k.checked_sub(here.first).filter(|i| *i < LinearLimit::MOST);
                     let slope = own.map_or(0.0, |i| here.slopes[i]);
                     let found = (up.value - down.value) / (2.0 * h);
                     let size = here.slopes.iter().fold(1.0, |most: f64, g| most.max(g.abs()));

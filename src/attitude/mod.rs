@@ -30,8 +30,8 @@ const SQRT_15: f64 = 3.872_983_346_207_417;
 /// Where three Gauss–Legendre nodes lie in a step, in its widths.
 const GAUSS: [f64; 3] = [0.5 - SQRT_15 / 10.0, 0.5, 0.5 + SQRT_15 / 10.0];
 
-/// The rotations of `steps` equal steps of the path whose angles and rates at a time `write` gives, in order; their product turns the attitude at
-/// the start into the attitude at the end.
+/// The rotations of `steps` equal steps of a path, in order; their product turns the attitude at the start into the
+/// attitude at the end. `write` gives the path's angles and rates at a time.
 ///
 /// Every step has three nodes of its own: the plain form of what [`Rollout`] does.
 pub fn increments<'a>(

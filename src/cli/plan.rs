@@ -131,21 +131,13 @@ impl Plan {
             Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
         let found = self.search(&settings, formulated)?;
         let reorientation = found.problem.task();
-        let known = BestKnown::of(reorientation);
-        if self.json {
-            let family = reorientation.family();
-            let shape = ShapeJson::new(family, &found.coefficients, found.assessment.duration);
-            say!("{}", self.json(&found, shape, known, |json| json.terms = Some(family.terms())));
-        } else {
-            self.tell(&found, known)?;
-        }
-        let residual = found.assessment.residual().to_degrees();
-        if residual > GOAL_REACHED_DEG {
-            note!(
-                "warning: the base ends {residual:.3}° from its goal; `--family spline`, more terms, another \
-                 optimiser, such as a hybrid, a larger budget or a larger `weights.base` may bring it there"
-            );
-        }
+        let (family, known) = (reorientation.family(), BestKnown::of(reorientation));
+        let shape = ShapeJson::new(family, &found.coefficients, found.assessment.duration);
+        self.report(&found, shape, known, |json| json.terms = Some(family.terms()))?;
+        warn_of_residual(
+            &found.assessment,
+            "`--family spline`, more terms, another optimiser, such as a hybrid, a larger budget or a larger",
+        );
         self.say_entry(&found, file.task);
         self.finish(&found)
     }
@@ -190,27 +182,26 @@ impl Plan {
             other => other.clone(),
         };
         let found = self.search(&settings, formulated)?;
-        if self.json {
-            let shape = ShapeJson::of(found.problem.task().family(), &found.coefficients);
-            let json = self.json(&found, shape, None, |json| {
-                (json.pieces, json.degree) = (Some(pieces), Some(degree));
-            });
-            say!("{json}");
-        } else {
-            self.tell(&found, None)?;
-        }
-        let residual = found.assessment.residual().to_degrees();
-        if residual > GOAL_REACHED_DEG {
-            note!(
-                "warning: the base ends {residual:.3}° from its goal; another `--seed`, more `--pieces` or a larger \
-                 `weights.base` may bring it there"
-            );
-        }
+        let shape = ShapeJson::of(found.problem.task().family(), &found.coefficients);
+        self.report(&found, shape, None, |json| {
+            (json.pieces, json.degree) = (Some(pieces), Some(degree));
+        })?;
+        warn_of_residual(&found.assessment, "another `--seed`, more `--pieces` or a larger");
         self.finish(&found)
     }
 
-    /// Says what was found, to people.
-    fn tell<F: Family>(&self, found: &Found<F>, known: Option<&BestKnown>) -> Result<(), CliError> {
+    /// Says what was found, as JSON or to people.
+    fn report<F: Family>(
+        &self,
+        found: &Found<F>,
+        shape: ShapeJson,
+        known: Option<&BestKnown>,
+        describe: impl FnOnce(&mut PlanJson<'_>),
+    ) -> Result<(), CliError> {
+        if self.json {
+            say!("{}", self.json(found, shape, known, describe));
+            return Ok(());
+        }
         let told = Told { task: found.problem.task().task(), assessment: &found.assessment };
         say!(
             "{} by {}, seed {}",
@@ -324,6 +315,16 @@ impl Plan {
         };
         describe(&mut json);
         serde_json::to_string_pretty(&json).unwrap_or_default()
+    }
+}
+
+/// Warns where the goal is missed; `advice` comes before the weight.
+fn warn_of_residual(assessment: &Assessment, advice: &str) {
+    let residual = assessment.residual().to_degrees();
+    if residual > GOAL_REACHED_DEG {
+        note!(
+            "warning: the base ends {residual:.3}° from its goal; {advice} `weights.base` may bring it there"
+        );
     }
 }
 

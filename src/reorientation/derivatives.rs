@@ -1,6 +1,6 @@
 //! First and second derivatives of the time-free cost, for optimisers that use them.
 
-use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, UnitQuaternion, Vector3};
 
 use super::fitness::Reorientation;
 use super::measure::Tables;
@@ -17,8 +17,8 @@ impl<F: Family> Reorientation<F> {
     /// local peak of rate, acceleration and jerk asks for.
     pub(super) fn linearise(&self, coefficients: &[f64]) -> Linearisation {
         let mut samples = self.workspace().samples;
-        let slopes =
-            self.width().run(Slopes { problem: self, coefficients, samples: &mut samples });
+        self.width().run(Sampling { problem: self, coefficients, samples: &mut samples });
+        let slopes = self.width().run(Slopes { problem: self, coefficients });
         let limits = &self.task().limits;
         let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
         let curves: Vec<_> = self.curves(coefficients).collect();
@@ -29,14 +29,18 @@ impl<F: Family> Reorientation<F> {
 
     /// The base's error, for families whose derivatives are linear in their coefficients.
     pub(super) fn error_slopes(&self, coefficients: &[f64]) -> ErrorSlopes {
-        let mut samples = self.workspace().samples;
-        let net = self.width().run(Slopes { problem: self, coefficients, samples: &mut samples });
-        let (error, by_turn) = self.turned_error(net.rotation);
-        let slopes = by_turn * &net.by_coefficient;
+        let net = self.width().run(Slopes { problem: self, coefficients });
+        let (error, slopes) = self.base_error(&net);
         ErrorSlopes {
-            value: DVector::from_column_slice(error.imag().as_slice()),
+            value: DVector::from_column_slice(error.as_slice()),
             slopes: DMatrix::from_column_slice(3, slopes.ncols(), slopes.as_slice()),
         }
+    }
+
+    /// The vector part of the base's error, and its slopes by the coefficients.
+    fn base_error(&self, net: &RotationSlopes) -> (Vector3<f64>, Matrix3xX<f64>) {
+        let (error, by_turn) = self.turned_error(net.rotation);
+        (error.imag(), by_turn * &net.by_coefficient)
     }
 
     /// The joints' paths.
@@ -48,14 +52,13 @@ impl<F: Family> Reorientation<F> {
 
     /// The components of the base's error.
     fn base_error_pieces(&self, net: &RotationSlopes) -> Vec<Piece> {
-        let (error, by_turn) = self.turned_error(net.rotation);
-        let jacobian = by_turn * &net.by_coefficient;
+        let (error, jacobian) = self.base_error(net);
         let piece = |(component, value): (usize, &f64)| Piece {
             id: PieceId::alone(component as u64),
             value: *value,
             gradient: jacobian.row(component).transpose(),
         };
-        error.imag().iter().enumerate().map(piece).collect()
+        error.iter().enumerate().map(piece).collect()
     }
 
     /// The base's error, and how its vector part follows a turn of the base's end in base axes.
@@ -92,11 +95,27 @@ fn to_id(peak: &LocalPeak) -> PieceId {
     PieceId { track: (3 * peak.joint + peak.order - 1) as u64, place: peak.tau }
 }
 
-/// The base's rotation over a path with its derivatives, and the path's samples.
-struct Slopes<'a, F: Family> {
+/// A path's samples.
+struct Sampling<'a, F: Family> {
     problem: &'a Reorientation<F>,
     coefficients: &'a [f64],
     samples: &'a mut F::Samples,
+}
+
+impl<F: Family> LaneWork for Sampling<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) {
+        let sampler = &self.problem.tables().sampler;
+        self.problem.family().sample::<T>(sampler, self.coefficients, self.samples);
+    }
+}
+
+/// The base's rotation over a path with its derivatives.
+struct Slopes<'a, F: Family> {
+    problem: &'a Reorientation<F>,
+    coefficients: &'a [f64],
 }
 
 impl<F: Family> LaneWork for Slopes<'_, F> {
@@ -105,9 +124,7 @@ impl<F: Family> LaneWork for Slopes<'_, F> {
     #[inline(always)]
     fn run<T: Lanes>(self) -> RotationSlopes {
         let (robot, family) = (&self.problem.task().robot, self.problem.family());
-        let Tables { rollout, sampler, .. } = self.problem.tables();
-        family.sample::<T>(sampler, self.coefficients, self.samples);
-        rollout.slopes::<T>(robot, family, self.coefficients)
+        self.problem.tables().rollout.slopes::<T>(robot, family, self.coefficients)
     }
 }
 

@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 
 use super::fitness::Reorientation;
 use super::formulation::Formulated;
-use crate::search::{ErrorSlopes, Failure, Limit, Limits, Problem as _, Rng, Timed, TimedWeights};
+use crate::search::{
+    ErrorSlopes, Failure, LinearLimit, LinearLimits, Problem as _, Rng, Timed, TimedWeights,
+};
 use crate::trajectory::{Family, Site};
 
 /// Sines that a random start is made of.
@@ -18,11 +20,11 @@ const ORDERS: usize = 4;
 
 impl<F: Family> Reorientation<F> {
     /// What the shortest duration follows from, and by how much joints leave their ranges.
-    fn limits(&self, coefficients: &[f64]) -> Limits {
+    fn limits(&self, coefficients: &[f64]) -> LinearLimits {
         let mut samples = self.workspace().samples;
         let (task, family, tables) = (self.task(), self.family(), self.tables());
         family.sample::<f64>(&tables.sampler, coefficients, &mut samples);
-        let mut limits = Limits::default();
+        let mut limits = LinearLimits::default();
         family.sites(&samples, &mut |site: &Site| {
             let (middle, most) = match site.order {
                 0 => {
@@ -33,7 +35,7 @@ impl<F: Family> Reorientation<F> {
             };
             let track =
                 |place: usize| (place * tables.ranges.len() + site.joint) * ORDERS + site.order;
-            let limit = Limit {
+            let limit = LinearLimit {
                 id: site.place.map(|place| track(place) as u32),
                 power: site.order as u8,
                 value: (site.value - middle) / most,
@@ -53,7 +55,7 @@ impl<F: Family> Reorientation<F> {
 }
 
 impl<F: Family> Timed for Formulated<F> {
-    fn limits(&self, x: &[f64]) -> Result<Limits, Failure> {
+    fn limits(&self, x: &[f64]) -> Result<LinearLimits, Failure> {
         Ok(self.task().limits(x))
     }
 

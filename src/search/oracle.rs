@@ -11,7 +11,7 @@ use super::points::{Bounds, Points};
 use super::problem::{Composite, Problem, Timed};
 use super::rng::Rng;
 use super::terms::{Linearisation, Multipliers, Shape};
-use super::timed::{ErrorSlopes, Limits, TimedWeights};
+use super::timed::{ErrorSlopes, LinearLimits, TimedWeights};
 
 /// Why an optimiser has to stop.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -243,7 +243,7 @@ impl<'a> Oracle<'a> {
 
     /// Evaluates one point of a [`Timed`](super::Timed) problem together with all that its cost follows from: one
     /// evaluation and one linearisation. Slopes of another shape than error and point ask for are a failure.
-    pub fn timing(&mut self, x: &[f64]) -> Result<(Limits, ErrorSlopes), Stop> {
+    pub fn timing(&mut self, x: &[f64]) -> Result<(LinearLimits, ErrorSlopes), Stop> {
         self.check()?;
         self.check_dimension(x.len())?;
         let problem = self.problem.timed().ok_or(Stop::NoDerivatives)?;
@@ -258,7 +258,7 @@ impl<'a> Oracle<'a> {
     }
 
     /// The limits of a [`Timed`](super::Timed) problem at a point, which is part of the model of its cost and no evaluation.
-    pub fn limits(&mut self, x: &[f64]) -> Result<Limits, Stop> {
+    pub fn limits(&mut self, x: &[f64]) -> Result<LinearLimits, Stop> {
         self.check_dimension(x.len())?;
         let problem = self.problem.timed().ok_or(Stop::NoDerivatives)?;
         let limits = self.clocked(|| problem.limits(x))?;

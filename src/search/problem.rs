@@ -7,7 +7,7 @@ use super::failure::Failure;
 use super::points::{Bounds, Points};
 use super::rng::Rng;
 use super::terms::{Linearisation, Multipliers};
-use super::timed::{ErrorSlopes, Limits, TimedWeights};
+use super::timed::{ErrorSlopes, LinearLimits, TimedWeights};
 
 /// A box-bounded minimisation problem.
 pub trait Problem: Send + Sync {
@@ -70,7 +70,7 @@ pub trait Composite: Problem {
 /// are those of all of them.
 pub trait Timed: Problem {
     /// Time and excess of a point, and the `ℓ_i` that they may follow from there.
-    fn limits(&self, x: &[f64]) -> Result<Limits, Failure>;
+    fn limits(&self, x: &[f64]) -> Result<LinearLimits, Failure>;
 
     /// The error at a point. With [`limits`](Self::limits) its cost is that of [`evaluate`](Problem::evaluate), to
     /// rounding.

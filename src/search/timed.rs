@@ -1,4 +1,4 @@
-//! What costs follow from whose time follows from linear limits.
+//! The parts of a [`Timed`](super::Timed) cost.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -27,18 +27,18 @@ pub struct ErrorSlopes {
 
 /// What limits of a point's time and excess are known.
 #[derive(Debug, Clone, Default)]
-pub struct Limits {
+pub struct LinearLimits {
     /// `T`.
     pub time: f64,
     /// `s`.
     pub excess: f64,
     /// Some `ℓ_i`, with the largest of all among them.
-    pub list: Vec<Limit>,
+    pub list: Vec<LinearLimit>,
 }
 
 /// A function linear in the variables.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limit {
+pub struct LinearLimit {
     /// The same at every point for the same function. Without one it is unlike all others.
     pub id: Option<u32>,
     /// `p`.
@@ -51,7 +51,7 @@ pub struct Limit {
     pub slopes: [f64; Self::MOST],
 }
 
-impl Limit {
+impl LinearLimit {
     /// The most variables in a row that a limit may follow.
     pub const MOST: usize = 6;
 
@@ -59,12 +59,6 @@ impl Limit {
     pub fn change(&self, step: &DVector<f64>) -> f64 {
         let own = &step.as_slice()[self.first..];
         own.iter().zip(&self.slopes).map(|(d, slope)| d * slope).sum()
-    }
-
-    /// The same for `−ℓ`.
-    #[must_use]
-    pub fn reversed(self) -> Self {
-        Self { value: -self.value, slopes: self.slopes.map(|slope| -slope), ..self }
     }
 
     /// The time, or for a power of zero the excess, that it asks for with another value.
@@ -81,12 +75,12 @@ impl Limit {
 
 impl TimedWeights {
     /// `J`.
-    pub fn cost(&self, limits: &Limits, error: &ErrorSlopes) -> f64 {
+    pub fn cost(&self, limits: &LinearLimits, error: &ErrorSlopes) -> f64 {
         self.time * limits.time + self.error * error.value.norm() + self.excess * limits.excess
     }
 
     /// Cost and violation.
-    pub fn evaluation(&self, limits: &Limits, error: &ErrorSlopes) -> Evaluation {
+    pub fn evaluation(&self, limits: &LinearLimits, error: &ErrorSlopes) -> Evaluation {
         Evaluation::new(self.cost(limits, error), limits.excess)
     }
 }
@@ -103,10 +97,10 @@ impl ErrorSlopes {
     }
 }
 
-impl Limits {
+impl LinearLimits {
     /// Whether they are of so many variables.
     pub(super) fn check(&self, variables: usize) -> Result<(), Failure> {
-        for Limit { first, slopes, .. } in &self.list {
+        for LinearLimit { first, slopes, .. } in &self.list {
             let last = slopes.iter().rposition(|slope| *slope != 0.0).map_or(*first, |i| first + i);
             if last >= variables {
                 let expected = format!("expected one of {variables}");

@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 use std::ops::Range;
 
+use super::bspline::MOST_DEGREE;
 use super::peaks::{Limits, LocalPeak, Peaks};
 use crate::lanes::Lanes;
 use crate::scalar::{Pair, Scalar};
@@ -150,7 +151,7 @@ pub struct Site {
     /// The first coefficient that the derivative follows.
     pub first: usize,
     /// Its slopes by those from there on.
-    pub slopes: [f64; 6],
+    pub slopes: [f64; MOST_DEGREE + 1],
 }
 
 /// One joint's path, at any time.

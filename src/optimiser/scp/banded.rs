@@ -1,7 +1,9 @@
 //! Least squares with banded rows and a border of two columns.
 
+use crate::search::LinearLimit;
+
 /// The most variables in a row that a row of the matrix follows.
-pub(super) const WIDTH: usize = 6;
+pub(super) const WIDTH: usize = LinearLimit::MOST;
 
 /// Columns of the border.
 pub(super) const BORDER: usize = 2;

@@ -10,6 +10,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector4};
 
 use super::banded::{BORDER, Triangle, WIDTH};
 use super::bends::Curvature;
+use super::cone::{Cone, Scaling, product, quotient};
 
 /// Most iterations.
 const ITERATIONS: usize = 60;
@@ -81,107 +82,6 @@ pub(super) struct Minimum {
 struct Pair {
     slack: f64,
     dual: f64,
-}
-
-/// A second-order cone of dimension four.
-#[derive(Clone, Copy)]
-struct Cone {
-    s: Vector4<f64>,
-    z: Vector4<f64>,
-}
-
-/// Nesterov and Todd's scaling `W`: `W z = W⁻¹ s = λ`.
-struct Scaling {
-    eta: f64,
-    w: Vector4<f64>,
-    lambda: Vector4<f64>,
-}
-
-fn determinant(v: &Vector4<f64>) -> f64 {
-    let length = v.fixed_rows::<3>(1).norm();
-    (v[0] - length) * (v[0] + length)
-}
-
-/// `a ∘ b`.
-fn product(a: &Vector4<f64>, b: &Vector4<f64>) -> Vector4<f64> {
-    let mut c = b * a[0] + a * b[0];
-    c[0] = a.dot(b);
-    c
-}
-
-/// The `x` with `a ∘ x = b`.
-fn quotient(a: &Vector4<f64>, b: &Vector4<f64>) -> Vector4<f64> {
-    let dot = a.dot(b) - a[0] * b[0];
-    let first = (a[0] * b[0] - dot) / determinant(a);
-    let mut x = (b - a * first) / a[0];
-    x[0] = first;
-    x
-}
-
-impl Cone {
-    fn scaling(&self) -> Option<Scaling> {
-        let (det_s, det_z) = (determinant(&self.s), determinant(&self.z));
-        if !(det_s > 0.0 && det_z > 0.0) {
-            return None;
-        }
-        let (s, mut z) = (self.s / det_s.sqrt(), self.z / det_z.sqrt());
-        let gamma = f64::midpoint(1.0, s.dot(&z)).sqrt();
-        z.fixed_rows_mut::<3>(1).neg_mut();
-        let w = (s + z) / (2.0 * gamma);
-        let eta = (det_s / det_z).powf(0.25);
-        let scaling = Scaling { eta, w, lambda: Vector4::zeros() };
-        Some(Scaling { lambda: scaling.times(&self.z), ..scaling })
-    }
-
-    /// How far `s + α ds` and `z + α dz` stay inside.
-    fn room(&self, ds: &Vector4<f64>, dz: &Vector4<f64>) -> f64 {
-        room_in_cone(&self.s, ds).min(room_in_cone(&self.z, dz))
-    }
-}
-
-fn room_in_cone(v: &Vector4<f64>, d: &Vector4<f64>) -> f64 {
-    // det(v + α d) = c + 2 b α + a α²
-    let (a, c) = (determinant(d), determinant(v));
-    let b = 2.0 * v[0] * d[0] - v.dot(d);
-    let mut least = f64::INFINITY;
-    let discriminant = b * b - a * c;
-    if discriminant >= 0.0 {
-        let q = -(b + b.signum() * discriminant.sqrt());
-        for root in [q / a, c / q] {
-            if root > 0.0 {
-                least = least.min(root);
-            }
-        }
-    }
-    if d[0] < 0.0 { least.min(-v[0] / d[0]) } else { least }
-}
-
-impl Scaling {
-    fn times(&self, v: &Vector4<f64>) -> Vector4<f64> {
-        let (w, dot) = (&self.w, self.w.dot(v) - self.w[0] * v[0]);
-        let mut out = v + w * (v[0] + dot / (1.0 + w[0]));
-        out[0] = w[0] * v[0] + dot;
-        out * self.eta
-    }
-
-    fn inverse_times(&self, v: &Vector4<f64>) -> Vector4<f64> {
-        let (w, dot) = (&self.w, self.w.dot(v) - self.w[0] * v[0]);
-        let mut out = v + w * (dot / (1.0 + w[0]) - v[0]);
-        out[0] = w[0] * v[0] - dot;
-        out / self.eta
-    }
-
-    /// Entry of `W²`.
-    fn square(&self, i: usize, j: usize) -> f64 {
-        let j_entry = if i != j {
-            0.0
-        } else if i == 0 {
-            1.0
-        } else {
-            -1.0
-        };
-        self.eta * self.eta * (2.0 * self.w[i] * self.w[j] - j_entry)
-    }
 }
 
 /// All unknowns.
@@ -377,7 +277,7 @@ impl Program<'_> {
         let duals: Vec<f64> = state.pairs.iter().map(|pair| pair.dual).collect();
         let mut by_d = DVector::zeros(self.variables());
         let by_beta = self.pull(&duals, by_d.as_mut_slice());
-        for i in 0..3 {
+        for i in 0..COMPONENTS {
             for (by_d, slope) in by_d.iter_mut().zip(self.slopes.row(i)) {
                 *by_d -= state.cone.z[i + 1] * slope;
             }
@@ -434,16 +334,16 @@ struct Newton<'a> {
 impl<'a> Newton<'a> {
     fn new(program: &'a Program<'a>) -> Self {
         let n = program.variables();
-        let columns = 3 + program.curvature.along.len();
+        let columns = COMPONENTS + program.curvature.along.len();
         let extent = |row: &Row| row.a.iter().rposition(|a| *a != 0.0).map_or(0, |last| last + 1);
         let width = program.rows.iter().map(extent).max().unwrap_or(1).max(1);
         let mut border = vec![0.0; (n + BORDER) * columns];
         for i in 0..n {
-            for k in 0..3 {
+            for k in 0..COMPONENTS {
                 border[i * columns + k] = program.slopes[(k, i)];
             }
             for (k, q) in program.curvature.directions.iter().enumerate() {
-                border[i * columns + 3 + k] = q[i];
+                border[i * columns + COMPONENTS + k] = q[i];
             }
         }
         Self {
@@ -508,13 +408,13 @@ impl<'a> Newton<'a> {
                 }
             }
         }
-        for i in 0..3 {
+        for i in 0..COMPONENTS {
             for j in 0..=i {
                 small[(i, j)] += scaling.square(i + 1, j + 1);
             }
         }
         for (k, c) in program.curvature.along.iter().enumerate() {
-            small[(3 + k, 3 + k)] += 1.0 / c;
+            small[(COMPONENTS + k, COMPONENTS + k)] += 1.0 / c;
         }
         self.small = Some(small.cholesky()?);
         Some(())
@@ -550,7 +450,7 @@ impl<'a> Newton<'a> {
         // z_0 + Δz_0 = W
         let y0 = -residuals.t;
         let mut g = DVector::zeros(self.columns);
-        for k in 0..3 {
+        for k in 0..COMPONENTS {
             g[k] = shift[k + 1] + scaling.square(k + 1, 0) * y0;
         }
         let (mut x, mut y) = self.solve_reduced(&f, &g);
@@ -564,12 +464,12 @@ impl<'a> Newton<'a> {
         let d = x.rows(0, n).into_owned();
         let z = Vector4::new(-y0, -y[0], -y[1], -y[2]);
         let mut s = Vector4::zeros();
-        for k in 0..3 {
+        for k in 0..COMPONENTS {
             s[k + 1] = program.slopes.row(k).tr_dot(&d);
         }
         s[0] = shift[0]
             + scaling.square(0, 0) * y0
-            + (0..3).map(|j| scaling.square(0, j + 1) * y[j]).sum::<f64>();
+            + (0..COMPONENTS).map(|j| scaling.square(0, j + 1) * y[j]).sum::<f64>();
         let mut pairs = Vec::with_capacity(state.pairs.len());
         let mut at = 0;
         program.room(d.as_slice(), beta, false, |more| {
@@ -630,13 +530,13 @@ impl<'a> Newton<'a> {
                 r_g[k] -= entry * x[i];
             }
         }
-        for k in 0..3 {
-            for l in 0..3 {
+        for k in 0..COMPONENTS {
+            for l in 0..COMPONENTS {
                 r_g[k] += scaling.square(k + 1, l + 1) * y[l];
             }
         }
         for (k, c) in program.curvature.along.iter().enumerate() {
-            r_g[3 + k] += y[3 + k] / c;
+            r_g[COMPONENTS + k] += y[COMPONENTS + k] / c;
         }
         (r_f, r_g)
     }

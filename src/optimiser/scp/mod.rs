@@ -21,6 +21,7 @@
 
 mod banded;
 mod bends;
+mod cone;
 mod interior_point;
 mod iterate;
 mod subproblem;
@@ -148,16 +149,20 @@ impl Scp {
     pub fn follow(&self, oracle: &mut Oracle<'_>, start: &[f64]) -> Result<Ending, Stop> {
         if let Some(weights) = oracle.timed_weights() {
             let mut search = timed::Search::new(self, oracle, weights, start)?;
-            for _ in 0..self.steps.get() {
-                if let Some(ending) = search.step()? {
-                    return Ok(ending);
-                }
-            }
-            return Ok(Ending::StepsSpent);
+            self.repeat(|| search.step())
+        } else {
+            let mut search = Search::new(self, oracle, start)?;
+            self.repeat(|| search.step())
         }
-        let mut search = Search::new(self, oracle, start)?;
+    }
+
+    /// Makes steps until one ends the search, or all are made.
+    fn repeat(
+        &self,
+        mut step: impl FnMut() -> Result<Option<Ending>, Stop>,
+    ) -> Result<Ending, Stop> {
         for _ in 0..self.steps.get() {
-            if let Some(ending) = search.step()? {
+            if let Some(ending) = step()? {
                 return Ok(ending);
             }
         }
@@ -173,6 +178,18 @@ const SMALLEST: f64 = 1e-9;
 const TAKE: f64 = 0.05;
 const NARROW: f64 = 0.3;
 const WIDEN: f64 = 0.7;
+
+/// The trust region's radius after a step that kept such a share of the promised gain and went so far towards the region's
+/// wall.
+fn next_radius(radius: f64, kept: f64, reach: f64) -> f64 {
+    match kept {
+        kept if kept >= WIDEN && reach > 0.9 => (2.0 * radius).min(1.0),
+        kept if kept >= NARROW => radius,
+        kept if kept >= TAKE => radius / 2.0,
+        // Also where the cost is NaN.
+        _ => 0.35 * radius * reach.min(1.0),
+    }
+}
 
 /// By how much the weights of norms grow at a time.
 const GROWTH: f64 = 10.0;
@@ -239,13 +256,7 @@ impl<'a, 'b> Search<'a, 'b> {
             self.curvature = there.curvature(self.oracle, &self.here, &step)?;
             self.here = there;
         }
-        self.radius = match kept {
-            kept if kept >= WIDEN && reach > 0.9 => (2.0 * self.radius).min(1.0),
-            kept if kept >= NARROW => self.radius,
-            kept if kept >= TAKE => self.radius / 2.0,
-            // Also where the cost is NaN.
-            _ => 0.35 * self.radius * reach.min(1.0),
-        };
+        self.radius = next_radius(self.radius, kept, reach);
         Ok(None)
     }
 

@@ -2,8 +2,8 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SecondOrderConeT,
-    SolverStatus, SupportedConeT, ZeroConeT,
+    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver as _, NonnegativeConeT,
+    SecondOrderConeT, SolverStatus, SupportedConeT, ZeroConeT,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -98,21 +98,9 @@ impl Model<'_> {
         let program = self.program(values);
         let size = program.q.len();
         let curvature = upper_triangle(self.curvature, size);
-        let settings = DefaultSettings {
-            verbose: false,
-            tol_gap_abs: TOLERANCE,
-            tol_gap_rel: TOLERANCE,
-            tol_feas: TOLERANCE,
-            ..DefaultSettings::default()
-        };
         let a = program.rows.matrix(size);
         let Program { q, rows, cones, .. } = &program;
-        let mut solver = DefaultSolver::new(&curvature, q, &a, &rows.b, cones, settings).ok()?;
-        solver.solve();
-        let solution = &solver.solution;
-        if !matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
-            return None;
-        }
+        let solution = by_clarabel(&curvature, q, &a, &rows.b, cones, TOLERANCE)?;
         // Within the region to the last bit.
         let d = DVector::from_column_slice(&solution.x[..lower.len()]).sup(lower).inf(upper);
         let multipliers = program.multipliers(self.parts, &solution.z);
@@ -197,6 +185,29 @@ impl Model<'_> {
             [low + ends[0].min(ends[1]), high + ends[0].max(ends[1])]
         })
     }
+}
+
+/// The solution of a conic program to such a tolerance, unless Clarabel fails.
+pub(super) fn by_clarabel(
+    p: &CscMatrix<f64>,
+    q: &[f64],
+    a: &CscMatrix<f64>,
+    b: &[f64],
+    cones: &[SupportedConeT<f64>],
+    tolerance: f64,
+) -> Option<DefaultSolution<f64>> {
+    let settings = DefaultSettings {
+        verbose: false,
+        tol_gap_abs: tolerance,
+        tol_gap_rel: tolerance,
+        tol_feas: tolerance,
+        ..DefaultSettings::default()
+    };
+    let mut solver = DefaultSolver::new(p, q, a, b, cones, settings).ok()?;
+    solver.solve();
+    let is_solved =
+        matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
+    is_solved.then_some(solver.solution)
 }
 
 /// A conic program: minimise `q · x + ½ xᵀ P x` with `b − A x` in the product of cones.

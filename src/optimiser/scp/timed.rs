@@ -12,8 +12,8 @@ use nalgebra::DVector;
 use super::bends::{Bends, Curvature};
 use super::subproblem::Region;
 use super::timed_subproblem::{Cuts, Model, Solution};
-use super::{Ending, NARROW, SMALLEST, Scp, TAKE, WIDEN};
-use crate::search::{ErrorSlopes, Limits, Oracle, Stop, TimedWeights};
+use super::{Ending, SMALLEST, Scp, TAKE, WIDEN, next_radius};
+use crate::search::{ErrorSlopes, LinearLimits, Oracle, Stop, TimedWeights};
 
 /// A step that would leave more of the error than this share of it calls for a larger weight.
 const LEFT: f64 = 0.9;
@@ -36,7 +36,7 @@ pub(super) struct Search<'a, 'b> {
     oracle: &'a mut Oracle<'b>,
     weights: TimedWeights,
     x: DVector<f64>,
-    here: (Limits, ErrorSlopes),
+    here: (LinearLimits, ErrorSlopes),
     /// What the error weighs in the search.
     weight: f64,
     falls: usize,
@@ -78,7 +78,7 @@ impl<'a, 'b> Search<'a, 'b> {
         TimedWeights { error: self.weight, ..self.weights }
     }
 
-    fn cost(&self, (limits, error): &(Limits, ErrorSlopes)) -> f64 {
+    fn cost(&self, (limits, error): &(LinearLimits, ErrorSlopes)) -> f64 {
         self.own_weights().cost(limits, error)
     }
 
@@ -109,13 +109,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         self.nu = step.nu;
         self.last = Some(step.d);
-        self.radius = match kept {
-            kept if kept >= WIDEN && reach > 0.9 => (2.0 * self.radius).min(1.0),
-            kept if kept >= NARROW => self.radius,
-            kept if kept >= TAKE => self.radius / 2.0,
-            // Also where the cost is NaN.
-            _ => 0.35 * self.radius * reach.min(1.0),
-        };
+        self.radius = next_radius(self.radius, kept, reach);
         Ok(None)
     }
 
@@ -137,7 +131,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Lets the weight fall where the error is gone.
-    fn relax(&mut self, there: &(Limits, ErrorSlopes), step: &Solution) {
+    fn relax(&mut self, there: &(LinearLimits, ErrorSlopes), step: &Solution) {
         let enough = GROWTH * step.nu.norm();
         if there.1.value.norm() < GONE && enough < self.weight && self.falls < FALLS {
             let least = self.weights.time * there.0.time / 10.0;
@@ -165,7 +159,7 @@ impl<'a, 'b> Search<'a, 'b> {
         enough: f64,
         region: &Region,
         curvature: &Curvature,
-    ) -> Result<((Limits, ErrorSlopes), Solution), Stop> {
+    ) -> Result<((LinearLimits, ErrorSlopes), Solution), Stop> {
         let there = self.attempt(&step)?;
         if self.cost(&there) <= enough {
             return Ok((there, step));
@@ -179,7 +173,7 @@ impl<'a, 'b> Search<'a, 'b> {
         Ok(if is_better { (corrected, second) } else { (there, step) })
     }
 
-    fn attempt(&mut self, step: &Solution) -> Result<(Limits, ErrorSlopes), Stop> {
+    fn attempt(&mut self, step: &Solution) -> Result<(LinearLimits, ErrorSlopes), Stop> {
         let there = self.oracle.timing((&self.x + &step.d).as_slice())?;
         self.bends.remember(&step.d, &there.1.slopes - &self.here.1.slopes);
         Ok(there)

@@ -1,16 +1,13 @@
 //! The convex subproblem of the search on a [`Timed`](crate::search::Timed) cost.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SecondOrderConeT,
-    SolverStatus, ZeroConeT,
-};
+use clarabel::solver::{NonnegativeConeT, SecondOrderConeT, ZeroConeT};
 use nalgebra::{DMatrix, DVector};
 
 use super::bends::Curvature;
 use super::interior_point::{Minimum, Program, Row};
-use super::subproblem::{Region, Rows};
-use crate::search::{Limit, Limits, Oracle, Stop, TimedWeights};
+use super::subproblem::{Region, Rows, by_clarabel};
+use crate::search::{LinearLimit, LinearLimits, Oracle, Stop, TimedWeights};
 
 /// What a solution may miss of the least cost, as a share of the cost.
 const GAP: f64 = 1e-9;
@@ -36,7 +33,7 @@ const SAME: f64 = 1e-3;
 
 /// Limits that mattered in the last subproblem and are not the same at every point.
 #[derive(Default)]
-pub(super) struct Cuts(Vec<Limit>);
+pub(super) struct Cuts(Vec<LinearLimit>);
 
 impl Cuts {
     /// Makes their values those at another point.
@@ -46,8 +43,8 @@ impl Cuts {
         }
     }
 
-    fn keep(&mut self, limit: &Limit) {
-        let same = |known: &Limit| {
+    fn keep(&mut self, limit: &LinearLimit) {
+        let same = |known: &LinearLimit| {
             let largest = known.slopes.iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
             let mut pairs = known.slopes.iter().zip(&limit.slopes);
             (known.power, known.first) == (limit.power, limit.first)
@@ -73,7 +70,7 @@ pub(super) struct Model<'a> {
     /// The cost at the point.
     pub(super) here: f64,
     pub(super) x: &'a DVector<f64>,
-    pub(super) limits: &'a Limits,
+    pub(super) limits: &'a LinearLimits,
     /// `r`, or what corrects it.
     pub(super) error: &'a DVector<f64>,
     /// `R`.
@@ -104,12 +101,14 @@ impl Model<'_> {
         cuts: &mut Cuts,
     ) -> Result<Option<Solution>, Stop> {
         let all = self.limits.list.iter().chain(&cuts.0);
-        let mut list: Vec<Limit> = all.filter(|limit| self.is_near(limit)).copied().collect();
-        for round in 1.. {
+        let mut list: Vec<LinearLimit> = all.filter(|limit| self.is_near(limit)).copied().collect();
+        let mut round = 0;
+        loop {
+            round += 1;
             let solve = || self.solve(&list).or_else(|| self.solve_by_clarabel(&list));
             let Some(Minimum { d, nu }) = oracle.conic(solve)? else { return Ok(None) };
             let ends = oracle.limits((self.x + &d).as_slice())?;
-            let asked = |limit: &Limit| limit.asks(limit.value + limit.change(&d));
+            let asked = |limit: &LinearLimit| limit.asks(limit.value + limit.change(&d));
             let [mut excess, mut time] = [0.0_f64; 2];
             for limit in &list {
                 let most = if limit.power == 0 { &mut excess } else { &mut time };
@@ -130,11 +129,11 @@ impl Model<'_> {
                         _ => self.weights.time * (limit.asks(limit.value) - time),
                     };
                     let value = limit.value - limit.change(&d);
-                    (more > slack).then_some(Limit { value, ..*limit })
+                    (more > slack).then_some(LinearLimit { value, ..*limit })
                 }));
             }
             if list.len() == known {
-                let active = |limit: &&Limit| match limit.power {
+                let active = |limit: &&LinearLimit| match limit.power {
                     0 => asked(limit) > excess - ACTIVE,
                     _ => asked(limit) > time * (1.0 - ACTIVE),
                 };
@@ -145,11 +144,10 @@ impl Model<'_> {
                 return Ok(Some(Solution { d, cost, left, nu }));
             }
         }
-        Ok(None)
     }
 
     /// Whether a limit may matter, judged by the last step.
-    fn is_near(&self, limit: &Limit) -> bool {
+    fn is_near(&self, limit: &LinearLimit) -> bool {
         let Some(last) = self.last else { return true };
         let own = last.as_slice()[limit.first..].iter().zip(&limit.slopes);
         let reach: f64 = own.map(|(d, slope)| (d * slope).abs()).sum();
@@ -157,13 +155,13 @@ impl Model<'_> {
     }
 
     /// `T_0^p`.
-    fn scale(&self, limit: &Limit) -> f64 {
+    fn scale(&self, limit: &LinearLimit) -> f64 {
         self.limits.time.powi(i32::from(limit.power))
     }
 
     /// The limits as rows whose largest entry is one.
-    fn rows(&self, list: &[Limit]) -> Vec<Row> {
-        let to_row = |limit: &Limit| {
+    fn rows(&self, list: &[LinearLimit]) -> Vec<Row> {
+        let to_row = |limit: &LinearLimit| {
             let scale = self.scale(limit);
             let (value, by_u) = (limit.value / scale, f64::from(limit.power) / 3.0);
             let largest = limit.slopes.iter().fold(0.0, |most: f64, g| most.max(g.abs())) / scale;
@@ -198,12 +196,12 @@ impl Model<'_> {
         }
     }
 
-    fn solve(&self, list: &[Limit]) -> Option<Minimum> {
+    fn solve(&self, list: &[LinearLimit]) -> Option<Minimum> {
         self.program(&self.rows(list)).minimise()
     }
 
     /// The same by a general solver, which takes several times as long.
-    fn solve_by_clarabel(&self, list: &[Limit]) -> Option<Minimum> {
+    fn solve_by_clarabel(&self, list: &[LinearLimit]) -> Option<Minimum> {
         let rows = self.rows(list);
         let Program { prices, weight, curvature, .. } = self.program(&rows);
         let (n, m) = (self.x.len(), curvature.along.len());
@@ -238,23 +236,11 @@ impl Model<'_> {
             all.push(direction.iter().copied().enumerate().chain([(t + 1 + i, -1.0)]), 0.0);
         }
         let cones = [NonnegativeConeT(inequalities), SecondOrderConeT(norm), ZeroConeT(m)];
-        let settings = DefaultSettings {
-            verbose: false,
-            tol_gap_abs: GAP,
-            tol_gap_rel: GAP,
-            tol_feas: GAP,
-            ..DefaultSettings::default()
-        };
         let places: Vec<usize> = (t + 1..size).collect();
         let along = curvature.along.clone();
         let p = CscMatrix::new_from_triplets(size, size, places.clone(), places, along);
         let a = all.matrix(size);
-        let mut solver = DefaultSolver::new(&p, &q, &a, &all.b, &cones, settings).ok()?;
-        solver.solve();
-        let solution = &solver.solution;
-        if !matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
-            return None;
-        }
+        let solution = by_clarabel(&p, &q, &a, &all.b, &cones, GAP)?;
         // Within the region to the last bit.
         let d = DVector::from_column_slice(&solution.x[..n]).sup(lower).inf(upper);
         let nu = &solution.z[inequalities + 1..inequalities + norm];
@@ -275,17 +261,35 @@ mod tests {
         let mut list = Vec::new();
         for i in 0..n - 3 {
             let slopes = [-1.0, 3.0, -3.0, 1.0, 0.0, 0.0].map(|entry| entry * 1e4);
-            list.push(Limit { id: None, power: 3, value: 180.0 * wave(i, 1.7), first: i, slopes });
+            list.push(LinearLimit {
+                id: None,
+                power: 3,
+                value: 180.0 * wave(i, 1.7),
+                first: i,
+                slopes,
+            });
             let slopes = [1.0, -1.0, 0.0, 0.0, 0.0, 0.0].map(|entry| entry * 30.0);
-            list.push(Limit { id: None, power: 1, value: 5.0 * wave(i, 0.7), first: i, slopes });
+            list.push(LinearLimit {
+                id: None,
+                power: 1,
+                value: 5.0 * wave(i, 0.7),
+                first: i,
+                slopes,
+            });
             let slopes = [0.2, 0.6, 0.2, 0.0, 0.0, 0.0];
-            list.push(Limit { id: None, power: 0, value: 0.99 * wave(i, 0.2), first: i, slopes });
+            list.push(LinearLimit {
+                id: None,
+                power: 0,
+                value: 0.99 * wave(i, 0.2),
+                first: i,
+                slopes,
+            });
         }
         let asked = |timed: bool| {
             let own = list.iter().filter(move |limit| (limit.power > 0) == timed);
             own.map(|limit| limit.asks(limit.value)).fold(0.0, f64::max)
         };
-        let limits = Limits { time: asked(true), excess: asked(false), list: list.clone() };
+        let limits = LinearLimits { time: asked(true), excess: asked(false), list: list.clone() };
         let x = DVector::zeros(n);
         let mut bends = Bends::default();
         for k in 1..5 {
