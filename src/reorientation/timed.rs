@@ -2,10 +2,12 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::DVector;
+
 use super::fitness::Reorientation;
 use super::formulation::Formulated;
 use crate::search::{
-    ErrorSlopes, Failure, LinearLimit, LinearLimits, Problem as _, Rng, Timed, TimedWeights,
+    Bend, ErrorSlopes, Failure, LinearLimit, LinearLimits, Problem as _, Rng, Timed, TimedWeights,
 };
 use crate::trajectory::{Family, Site};
 
@@ -14,6 +16,11 @@ const SINES: u32 = 3;
 
 /// The typical amplitude of the first, as a share of half a variable's box.
 const AMPLITUDE: f64 = 0.05;
+
+/// Sines per joint along which the error's second derivative is asked for, and the length of the differences that it is
+/// made of.
+const DIRECTIONS: usize = 8;
+const DIFFERENCE: f64 = 1e-6;
 
 /// Orders of derivatives that have limits or a range.
 const ORDERS: usize = 4;
@@ -54,6 +61,22 @@ impl<F: Family> Reorientation<F> {
     }
 }
 
+/// The first sines over each joint's variables, of unit length; they are orthogonal (the discrete sine transform).
+fn smooth_directions<F: Family>(family: &F) -> impl Iterator<Item = DVector<f64>> + '_ {
+    (0..family.joints()).flat_map(move |joint| {
+        let own = family.coefficients_of(joint);
+        (1..=own.len().min(DIRECTIONS)).map(move |k| {
+            let step = PI * k as f64 / (own.len() + 1) as f64;
+            let scale = (2.0 / (own.len() + 1) as f64).sqrt();
+            let mut direction = DVector::zeros(family.dimension());
+            for (i, value) in direction.as_mut_slice()[own.clone()].iter_mut().enumerate() {
+                *value = scale * (step * (i + 1) as f64).sin();
+            }
+            direction
+        })
+    })
+}
+
 impl<F: Family> Timed for Formulated<F> {
     fn limits(&self, x: &[f64]) -> Result<LinearLimits, Failure> {
         Ok(self.task().limits(x))
@@ -61,6 +84,17 @@ impl<F: Family> Timed for Formulated<F> {
 
     fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure> {
         Ok(self.task().error_slopes(x))
+    }
+
+    /// Along the first sines of every joint's variables: rougher directions are held still by the limits.
+    fn bends(&self, x: &[f64]) -> Result<Vec<Bend>, Failure> {
+        let here = self.task().error_slopes(x).slopes;
+        let along = |direction: DVector<f64>| {
+            let there = DVector::from_column_slice(x) + &direction * DIFFERENCE;
+            let change = (self.task().error_slopes(there.as_slice()).slopes - &here) / DIFFERENCE;
+            Bend { direction, change }
+        };
+        Ok(smooth_directions(self.task().family()).map(along).collect())
     }
 
     fn weights(&self) -> TimedWeights {

@@ -116,4 +116,4 @@ pub use points::{Bounds, BoundsError, Points, PointsIter, PointsIterMut};
 pub use problem::{Composite, Problem, Timed};
 pub use rng::Rng;
 pub use terms::{Linearisation, Multipliers, Piece, PieceId, Shape, Term};
-pub use timed::{ErrorSlopes, LinearLimit, LinearLimits, TimedWeights};
+pub use timed::{Bend, ErrorSlopes, LinearLimit, LinearLimits, TimedWeights};

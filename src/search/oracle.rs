@@ -11,7 +11,7 @@ use super::points::{Bounds, Points};
 use super::problem::{Composite, Problem, Timed};
 use super::rng::Rng;
 use super::terms::{Linearisation, Multipliers, Shape};
-use super::timed::{ErrorSlopes, LinearLimits, TimedWeights};
+use super::timed::{Bend, ErrorSlopes, LinearLimits, TimedWeights};
 
 /// Why an optimiser has to stop.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -264,6 +264,18 @@ impl<'a> Oracle<'a> {
         let limits = self.clocked(|| problem.limits(x))?;
         limits.check(x.len())?;
         Ok(limits)
+    }
+
+    /// How the error of a [`Timed`](super::Timed) problem bends at a point, where it has so many components: a second
+    /// derivative.
+    pub fn bends(&mut self, x: &[f64], components: usize) -> Result<Vec<Bend>, Stop> {
+        self.check()?;
+        self.check_dimension(x.len())?;
+        let problem = self.problem.timed().ok_or(Stop::NoDerivatives)?;
+        self.curvatures += 1;
+        let bends = self.clocked(|| problem.bends(x))?;
+        bends.iter().try_for_each(|bend| bend.check(components, x.len()))?;
+        Ok(bends)
     }
 
     /// What parts of a [`Timed`](super::Timed) cost weigh, where the problem has one.

@@ -7,7 +7,7 @@ use super::failure::Failure;
 use super::points::{Bounds, Points};
 use super::rng::Rng;
 use super::terms::{Linearisation, Multipliers};
-use super::timed::{ErrorSlopes, LinearLimits, TimedWeights};
+use super::timed::{Bend, ErrorSlopes, LinearLimits, TimedWeights};
 
 /// A box-bounded minimisation problem.
 pub trait Problem: Send + Sync {
@@ -75,6 +75,11 @@ pub trait Timed: Problem {
     /// The error at a point. With [`limits`](Self::limits) its cost is that of [`evaluate`](Problem::evaluate), to
     /// rounding.
     fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure>;
+
+    /// How the error's slopes change along a few directions, those in which steps go far; elsewhere
+    /// the search takes the error for linear.
+    /// The directions are orthonormal.
+    fn bends(&self, x: &[f64]) -> Result<Vec<Bend>, Failure>;
 
     /// The same at every point.
     fn weights(&self) -> TimedWeights;

@@ -25,6 +25,15 @@ pub struct ErrorSlopes {
     pub slopes: DMatrix<f64>,
 }
 
+/// The error's second derivative in one direction.
+#[derive(Debug, Clone)]
+pub struct Bend {
+    /// The direction.
+    pub direction: DVector<f64>,
+    /// The change of [`ErrorSlopes::slopes`] per unit of length along it.
+    pub change: DMatrix<f64>,
+}
+
 /// What limits of a point's time and excess are known.
 #[derive(Debug, Clone, Default)]
 pub struct LinearLimits {
@@ -94,6 +103,19 @@ impl ErrorSlopes {
         }
         let [found, expected] = [found, expected].map(|(m, n)| format!("{m} × {n}"));
         Err(format!("found slopes of an error of {found}, expected {expected}").into())
+    }
+}
+
+impl Bend {
+    /// Whether it is of so many components and variables.
+    pub(super) fn check(&self, components: usize, variables: usize) -> Result<(), Failure> {
+        let found = (self.direction.len(), self.change.shape());
+        if found == (variables, (components, variables)) {
+            return Ok(());
+        }
+        let (length, (m, n)) = found;
+        let expected = format!("expected {variables} and {components} × {variables}");
+        Err(format!("found a direction of {length} and changes of {m} × {n}, {expected}").into())
     }
 }
 

@@ -1,21 +1,62 @@
-//! How the error bends, from steps lately tried.
-
-use std::collections::VecDeque;
+//! How the error bends: along the directions that the problem tells of, and over the step last tried.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Steps that are remembered.
-const REMEMBERED: usize = 12;
+use crate::search::Bend;
 
-/// Shorter ones say nothing.
-const SHORTEST: f64 = 1e-8;
+/// A curvature below this share of the largest is none.
+const NOTHING: f64 = 1e-3;
 
 /// A step of which less than this share is new says nothing more.
 const NEW: f64 = 0.1;
 
-/// The changes of the error's slopes over the last steps.
+/// Shorter ones say nothing at all.
+const SHORTEST: f64 = 1e-8;
+
+/// The changes of the error's slopes in some directions.
 #[derive(Default)]
-pub(super) struct Bends(VecDeque<(DVector<f64>, DMatrix<f64>)>);
+pub(super) struct Bends {
+    /// Told by the problem at the present point; orthonormal.
+    pub(super) told: Option<Vec<Bend>>,
+    tried: Option<Bend>,
+}
+
+impl Bends {
+    /// Takes note of the slopes' change over a step.
+    pub(super) fn remember(&mut self, step: &DVector<f64>, change: DMatrix<f64>) {
+        let length = step.norm();
+        if length > SHORTEST {
+            self.tried = Some(Bend { direction: step / length, change: change / length });
+        }
+    }
+
+    /// All of them, orthonormal.
+    fn orthonormal(&self) -> Vec<Bend> {
+        let mut all = self.told.clone().unwrap_or_default();
+        if let Some(tried) = &self.tried {
+            let Bend { mut direction, mut change } = tried.clone();
+            // Twice is enough for orthogonality to rounding.
+            for _ in 0..2 {
+                for bend in &all {
+                    let share = bend.direction.dot(&direction);
+                    direction -= &bend.direction * share;
+                    change -= &bend.change * share;
+                }
+            }
+            let new = direction.norm();
+            if new > NEW {
+                all.push(Bend { direction: direction / new, change: change / new });
+            }
+        }
+        all
+    }
+
+    /// The second derivative of `ν · r` in the space of these directions, without what is negative (the Rayleigh–Ritz
+    /// method, Parlett 1998, doi:10.1137/1.9781611971163, chapter 11). Elsewhere nothing is known, and zero said.
+    pub(super) fn curvature(&self, nu: &DVector<f64>) -> Curvature {
+        Curvature::of(&self.orthonormal(), nu)
+    }
+}
 
 /// A positive semidefinite second derivative `Σ c_i q_i q_iᵀ` with orthonormal `q_i`.
 #[derive(Default)]
@@ -24,60 +65,32 @@ pub(super) struct Curvature {
     pub(super) along: Vec<f64>,
 }
 
-impl Bends {
-    /// Takes note of the slopes' change over a step.
-    pub(super) fn remember(&mut self, step: &DVector<f64>, change: DMatrix<f64>) {
-        if step.norm() < SHORTEST {
-            return;
+impl Curvature {
+    fn of(bends: &[Bend], nu: &DVector<f64>) -> Self {
+        let mut curvature = Self::default();
+        if bends.is_empty() {
+            return curvature;
         }
-        if self.0.len() == REMEMBERED {
-            self.0.pop_front();
-        }
-        self.0.push_back((step.clone(), change));
-    }
-
-    /// The second derivative of `ν · r` in the space of these steps, without what is negative (the Rayleigh–Ritz method,
-    /// Parlett 1998, doi:10.1137/1.9781611971163, chapter 11). Elsewhere nothing is known, and zero said.
-    pub(super) fn curvature(&self, nu: &DVector<f64>) -> Curvature {
-        let (mut basis, mut images) = (Vec::<DVector<f64>>::new(), Vec::<DVector<f64>>::new());
-        for (step, change) in self.0.iter().rev() {
-            let length = step.norm();
-            let (mut own, mut image) = (step / length, change.tr_mul(nu) / length);
-            // Twice is enough for orthogonality to rounding.
-            for _ in 0..2 {
-                for (q, y) in basis.iter().zip(&images) {
-                    let share = q.dot(&own);
-                    own -= q * share;
-                    image -= y * share;
-                }
-            }
-            let new = own.norm();
-            if new > NEW {
-                basis.push(own / new);
-                images.push(image / new);
-            }
-        }
-        let m = basis.len();
-        if m == 0 {
-            return Curvature::default();
-        }
-        let entry =
-            |i: usize, j: usize| f64::midpoint(basis[i].dot(&images[j]), basis[j].dot(&images[i]));
-        let eigen = DMatrix::from_fn(m, m, entry).symmetric_eigen();
-        let mut curvature = Curvature::default();
+        let images: Vec<_> = bends.iter().map(|bend| bend.change.tr_mul(nu)).collect();
+        let entry = |i: usize, j: usize| {
+            f64::midpoint(bends[i].direction.dot(&images[j]), bends[j].direction.dot(&images[i]))
+        };
+        let eigen = DMatrix::from_fn(bends.len(), bends.len(), entry).symmetric_eigen();
+        let least = NOTHING * eigen.eigenvalues.amax();
         for (value, shares) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            if *value > 0.0 {
-                let zero = DVector::zeros(basis[0].len());
-                let parts = basis.iter().zip(shares.iter());
-                curvature.directions.push(parts.fold(zero, |sum, (q, share)| sum + q * *share));
+            if *value > least {
+                let zero = DVector::zeros(bends[0].direction.len());
+                let parts = bends.iter().zip(shares.iter());
+                let sum = |sum: DVector<f64>, (bend, share): (&Bend, &f64)| {
+                    sum + &bend.direction * *share
+                };
+                curvature.directions.push(parts.fold(zero, sum));
                 curvature.along.push(*value);
             }
         }
         curvature
     }
-}
 
-impl Curvature {
     /// `½ dᵀ B d`.
     pub(super) fn energy(&self, d: &DVector<f64>) -> f64 {
         let parts = self.directions.iter().zip(&self.along);
@@ -89,7 +102,7 @@ impl Curvature {
 mod tests {
     use super::*;
 
-    /// Of `r_k = ½ xᵀ H_k x` the curvature along the steps is that of `Σ ν_k H_k`, without what is negative.
+    /// Of `r_k = ½ xᵀ H_k x` the curvature is that of `Σ ν_k H_k`, without what is negative.
     #[test]
     fn the_curvature_of_a_quadratic_is_found() {
         let n = 6;
@@ -102,14 +115,22 @@ mod tests {
         let nu = DVector::from_vec(vec![0.7, -0.4, 1.1]);
         let sum =
             hessians.iter().zip(nu.iter()).fold(DMatrix::zeros(n, n), |sum, (h, nu)| sum + h * *nu);
-        let mut bends = Bends::default();
-        for k in 0..n {
-            let step = DVector::from_fn(n, |i, _| {
-                f64::from(u8::from(i == k)) + 0.1 * f64::sin((i + k) as f64)
-            });
-            let rows: Vec<_> = hessians.iter().map(|h| (h * &step).transpose()).collect();
-            bends.remember(&step, DMatrix::from_rows(&rows));
-        }
+        let all = DMatrix::from_fn(n, n, |i, k| {
+            f64::from(u8::from(i == k)) + 0.1 * f64::sin((i + k) as f64)
+        });
+        let change = |direction: &DVector<f64>| {
+            let rows: Vec<_> = hessians.iter().map(|h| (h * direction).transpose()).collect();
+            DMatrix::from_rows(&rows)
+        };
+        // All directions but one are told, and the last follows from a step.
+        let orthonormal = all.clone().qr().q();
+        let told = orthonormal.column_iter().take(n - 1).map(|q| {
+            let direction = q.into_owned();
+            Bend { change: change(&direction), direction }
+        });
+        let mut bends = Bends { told: Some(told.collect()), tried: None };
+        let step = all.column(n - 1) * 0.3;
+        bends.remember(&step, change(&step));
         let found = bends.curvature(&nu);
         let eigen = sum.symmetric_eigen();
         let mut positive: Vec<f64> =

@@ -6,7 +6,7 @@
 //! cone and the curvature add a border of a few columns. A step so takes a time linear in the number of variables, where
 //! a general solver's sparse factorisation spends most of it on indices.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector4};
+use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, Dyn, Vector4};
 
 use super::banded::{BORDER, Triangle, WIDTH};
 use super::bends::Curvature;
@@ -14,6 +14,9 @@ use super::cone::{Cone, Scaling, product, quotient};
 
 /// Most iterations.
 const ITERATIONS: usize = 60;
+
+/// A gap of this share of what the minimum gains is small enough.
+const SHARE: f64 = 0.01;
 
 /// Share of the way to the boundary that a step goes.
 const FRACTION: f64 = 0.99;
@@ -36,7 +39,7 @@ const REFINED: f64 = 1e4;
 /// Components of the error.
 const COMPONENTS: usize = 3;
 
-/// `a · d − e β ≤ b_0` and `−a · d − e β ≤ b_1`, where `a` is not zero from `first` on only.
+/// `a · d − e β ≤ b_0` and `−a · d − e β ≤ b_1`, where `a` stands for entries from `first` on, all of them variables.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row {
     pub(super) first: usize,
@@ -45,6 +48,23 @@ pub(super) struct Row {
     pub(super) border: usize,
     pub(super) e: f64,
     pub(super) b: [f64; 2],
+}
+
+impl Row {
+    /// `a · d`.
+    fn along(&self, d: &[f64]) -> f64 {
+        let own = d[self.first..].first_chunk::<WIDTH>();
+        own.map_or(0.0, |own| own.iter().zip(&self.a).map(|(d, a)| d * a).sum())
+    }
+
+    /// Adds a multiple of `a`.
+    fn add_to(&self, out: &mut [f64], times: f64) {
+        if let Some(own) = out[self.first..].first_chunk_mut::<WIDTH>() {
+            for (out, a) in own.iter_mut().zip(&self.a) {
+                *out += times * a;
+            }
+        }
+    }
 }
 
 /// Minimise over `d`, `β ≥ 0` and `t`
@@ -67,8 +87,9 @@ pub(super) struct Program<'a> {
     /// `R`.
     pub(super) slopes: &'a DMatrix<f64>,
     pub(super) curvature: &'a Curvature,
-    /// The gap between primal and dual cost that is enough.
+    /// The gap between primal and dual cost that is enough, unless a share of the gain over `here` is.
     pub(super) gap: f64,
+    pub(super) here: f64,
 }
 
 /// `d` and the error's multiplier, of a length of `W` at most.
@@ -156,7 +177,7 @@ impl Program<'_> {
     fn room(&self, d: &[f64], beta: [f64; 2], constant: bool, mut each: impl FnMut(f64)) {
         let on = f64::from(u8::from(constant));
         for row in self.rows {
-            let own: f64 = d[row.first..].iter().zip(&row.a).map(|(d, a)| d * a).sum();
+            let own = row.along(d);
             let more = row.e * beta[row.border];
             each(on * row.b[0] - own + more);
             each(on * row.b[1] + own + more);
@@ -174,9 +195,7 @@ impl Program<'_> {
         let (rows, rest) = numbers.split_at(2 * self.rows.len());
         for (row, pair) in self.rows.iter().zip(rows.chunks_exact(2)) {
             let (both, net) = (pair[0] + pair[1], pair[0] - pair[1]);
-            for (out, a) in out[row.first..].iter_mut().zip(&row.a) {
-                *out += net * a;
-            }
+            row.add_to(out, net);
             by_beta[row.border] -= row.e * both;
         }
         let (bounds, beta) = rest.split_at(2 * self.variables());
@@ -219,9 +238,15 @@ impl Program<'_> {
         State { d, beta, pairs, cone: Cone { s, z } }
     }
 
+    fn cost(&self, State { d, beta, .. }: &State) -> f64 {
+        let prices: f64 = self.prices.iter().zip(beta).map(|(price, beta)| price * beta).sum();
+        let left = (self.error + self.slopes * d).norm();
+        prices + self.weight * left + self.curvature.energy(d)
+    }
+
     /// The minimum, unless rounding is in the way.
     pub(super) fn minimise(&self) -> Option<Minimum> {
-        if self.error.len() != COMPONENTS {
+        if self.error.len() != COMPONENTS || self.variables() < WIDTH {
             return None;
         }
         let mut state = self.start();
@@ -230,7 +255,9 @@ impl Program<'_> {
             let gap = state.gap();
             let residuals = self.residuals(&state);
             let miss = residuals.d.amax() / self.scale();
-            if gap <= self.gap && miss <= FEASIBLE {
+            let enough = self.gap.max(SHARE * (self.here - self.cost(&state)));
+            let unbalanced = residuals.d.abs().dot(&state.d.abs());
+            if gap <= enough && (unbalanced <= enough || miss <= FEASIBLE) {
                 return Some(state.minimum());
             }
             let Some(change) = self.direction(&mut newton, &state, &residuals, gap) else {
@@ -400,14 +427,8 @@ impl<'a> Newton<'a> {
         self.lower.copy_from_slice(&self.border);
         self.triangle.solve_transposed(&mut self.lower, columns);
         // The small system in y, 3 of the cone and the rest of the curvature, with the other sign.
-        let mut small = DMatrix::zeros(columns, columns);
-        for row in self.lower.chunks_exact(columns) {
-            for j in 0..columns {
-                for i in j..columns {
-                    small[(i, j)] += row[i] * row[j];
-                }
-            }
-        }
+        let lower = DMatrixView::from_slice(&self.lower, columns, n + BORDER);
+        let mut small = lower * lower.transpose();
         for i in 0..COMPONENTS {
             for j in 0..=i {
                 small[(i, j)] += scaling.square(i + 1, j + 1);

@@ -1,7 +1,7 @@
 //! The search on a [`Timed`](crate::search::Timed) cost, for many variables.
 //!
-//! Limits and time are in the model as they are, so nothing bends away from it but the error; no second derivatives are
-//! asked for, and the few directions in which curvature matters show themselves (see [`bends`](super::bends)).
+//! Limits and time are in the model as they are, so nothing bends away from it but the error, whose second derivatives are
+//! taken in a few directions only (see [`bends`](super::bends)).
 //!
 //! The error's weight begins small, as in the search on other costs. It grows where a step would leave most of the error
 //! for the sake of time, so a start that is far from its goal first reaches it and then hastens, and falls to a few times
@@ -88,7 +88,7 @@ impl<'a, 'b> Search<'a, 'b> {
             return Ok(Some(Ending::Stalled));
         }
         let region = Region::around(self.oracle.bounds(), &self.x, self.radius);
-        let curvature = self.bends.curvature(&self.nu);
+        let curvature = self.curvature()?;
         let Some(step) = self.weighed(&region, &curvature)? else {
             self.radius /= 4.0;
             return Ok(None);
@@ -104,6 +104,7 @@ impl<'a, 'b> Search<'a, 'b> {
         self.relax(&there, &step);
         if kept >= TAKE {
             self.x += &step.d;
+            self.bends.told = None;
             self.cuts.move_by(&step.d);
             self.here = there;
         }
@@ -111,6 +112,17 @@ impl<'a, 'b> Search<'a, 'b> {
         self.last = Some(step.d);
         self.radius = next_radius(self.radius, kept, reach);
         Ok(None)
+    }
+
+    /// How the error bends; of no weight before the first subproblem.
+    fn curvature(&mut self) -> Result<Curvature, Stop> {
+        if self.nu.norm() == 0.0 {
+            return Ok(Curvature::default());
+        }
+        if self.bends.told.is_none() {
+            self.bends.told = Some(self.oracle.bends(self.x.as_slice(), self.nu.len())?);
+        }
+        Ok(self.bends.curvature(&self.nu))
     }
 
     /// A step, with a weight of the error that does not leave most of it.

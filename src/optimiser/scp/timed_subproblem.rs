@@ -17,7 +17,7 @@ const STEPS: f64 = 4.0;
 const NEAR: f64 = 0.9;
 
 /// Share of what a step promises that limits which are not in the subproblem may take from it.
-const MISS: f64 = 0.03;
+const MISS: f64 = 0.3;
 
 /// The least such share, of the cost.
 const LEAST_MISS: f64 = 1e-10;
@@ -167,9 +167,13 @@ impl Model<'_> {
             let largest = limit.slopes.iter().fold(0.0, |most: f64, g| most.max(g.abs())) / scale;
             let unit = largest.max(by_u);
             let (border, e) = if limit.power == 0 { (1, 1.0) } else { (0, by_u) };
+            let mut a = limit.slopes.map(|slope| slope / scale / unit);
+            // What stands after the last variable is zero.
+            let after = limit.first.saturating_sub(self.x.len().saturating_sub(a.len()));
+            a.rotate_right(after.min(limit.first));
             Row {
-                first: limit.first,
-                a: limit.slopes.map(|slope| slope / scale / unit),
+                first: limit.first - after.min(limit.first),
+                a,
                 border,
                 e: e / unit,
                 b: [(1.0 - by_u - value) / unit, (1.0 - by_u + value) / unit],
@@ -193,6 +197,7 @@ impl Model<'_> {
             slopes: self.slopes,
             curvature: self.curvature,
             gap: GAP * self.here.abs(),
+            here: self.here - 2.0 / 3.0 * self.weights.time * self.limits.time,
         }
     }
 
@@ -250,7 +255,6 @@ impl Model<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bends::Bends;
     use super::*;
     use crate::search::Bounds;
 
@@ -291,22 +295,21 @@ mod tests {
         };
         let limits = LinearLimits { time: asked(true), excess: asked(false), list: list.clone() };
         let x = DVector::zeros(n);
-        let mut bends = Bends::default();
-        for k in 1..5 {
-            let step = DVector::from_fn(n, |i, _| 0.01 * wave(i, 0.4 * f64::from(k)));
-            bends.remember(
-                &step,
-                DMatrix::from_fn(3, n, |j, i| f64::from(k) * step[i] / (1.0 + j as f64)),
-            );
-        }
+        let curvature = Curvature {
+            directions: (0..4)
+                .map(|k| DVector::from_fn(n, |i, _| 0.1 * wave(i, 0.4 * f64::from(k))))
+                .collect(),
+            along: vec![0.3, 0.1, 0.02, 0.5],
+        };
         let model = Model {
             weights: TimedWeights { time: 0.1, error: weight, excess: 100.0 },
-            here: 1.0,
+            // So little that no gain over it is enough.
+            here: 0.1,
             x: &x,
             limits: &limits,
             error: &DVector::from_vec(vec![0.02, -0.03, 0.01]),
             slopes: &DMatrix::from_fn(3, n, |j, i| 0.05 * wave(i, 0.1 + 0.2 * j as f64)),
-            curvature: &bends.curvature(&DVector::from_vec(vec![0.5, 0.4, 0.2])),
+            curvature: &curvature,
             region: &Region::around(&Bounds::cube(n, [-1.0, 1.0]), &x, radius),
             last: None,
         };
