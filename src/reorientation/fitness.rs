@@ -92,6 +92,12 @@ impl<F: Family> Reorientation<F> {
         Self { width: width.min(Width::widest()), ..self.clone() }
     }
 
+    /// The same problem over the family's [coarser](Family::coarser) one.
+    pub(super) fn coarser(&self) -> Option<Self> {
+        let coarser = Self::over(self.task.clone(), self.family.coarser()?, self.accuracy);
+        Some(coarser.with_width(self.width))
+    }
+
     /// The lanes that motions are evaluated with.
     pub fn width(&self) -> Width {
         self.width

@@ -11,8 +11,8 @@ use super::fitness::{Assessment, Reorientation};
 use super::measure::Workspace;
 use super::settings::Boxes;
 use crate::search::{
-    Bounds, BoundsError, Composite, Evaluation, Failure, Linearisation, Multipliers, Points,
-    Problem, Timed,
+    Bounds, BoundsError, Coarse, Composite, Evaluation, Failure, Linearisation, Multipliers,
+    Points, Problem, Timed,
 };
 use crate::trajectory::{Family, SinePolynomial, Spline};
 
@@ -56,10 +56,12 @@ pub struct Formulated<F: Family = SinePolynomial> {
     bounds: Bounds,
     /// The family whose powers of time the variables are, where they are.
     powers: Option<SinePolynomial>,
+    /// The same over the family's coarser one; only where the duration is no variable.
+    coarser: Option<Arc<Self>>,
 }
 
 impl Formulated {
-    /// The task in these variables, within these boxes of its own family.
+    /// The task in these variables, within these boxes of its own family, or of one with more terms.
     pub fn new(
         formulation: Formulation,
         task: Arc<Reorientation>,
@@ -71,7 +73,8 @@ impl Formulated {
                 boxes.alpha.iter().flat_map(|&a| vec![[-a, a]; family.joints()]).collect()
             }
             Formulation::Scaled | Formulation::TimeFree => {
-                let joint: Vec<_> = boxes.coefficient.iter().map(|&c| [-c, c]).collect();
+                let widths = boxes.coefficient.iter().take(family.terms());
+                let joint: Vec<_> = widths.map(|&c| [-c, c]).collect();
                 joint.repeat(family.joints())
             }
         };
@@ -79,7 +82,13 @@ impl Formulated {
             pairs.push(boxes.duration);
         }
         let powers = (formulation == Formulation::Raw).then(|| family.clone());
-        Ok(Self { formulation, task, bounds: Bounds::new(pairs)?, powers })
+        let coarser = match formulation {
+            Formulation::TimeFree => task.coarser(),
+            Formulation::Raw | Formulation::Scaled => None,
+        };
+        let coarser = coarser.map(|task| Self::new(formulation, Arc::new(task), boxes));
+        let coarser = coarser.transpose()?.map(Arc::new);
+        Ok(Self { formulation, task, bounds: Bounds::new(pairs)?, powers, coarser })
     }
 }
 
@@ -96,7 +105,9 @@ impl Formulated<Spline> {
             pairs.extend(own.iter().map(|point| [lower - more - point, upper + more - point]));
         }
         let bounds = Bounds::new(pairs)?;
-        Ok(Self { formulation: Formulation::TimeFree, task, bounds, powers: None })
+        let coarser = task.coarser().map(|task| Self::free_form(Arc::new(task))).transpose()?;
+        let (formulation, coarser) = (Formulation::TimeFree, coarser.map(Arc::new));
+        Ok(Self { formulation, task, bounds, powers: None, coarser })
     }
 }
 
@@ -185,6 +196,16 @@ impl<F: Family> Problem for Formulated<F> {
     fn timed(&self) -> Option<&dyn Timed> {
         let is_timed = self.formulation == Formulation::TimeFree && self.task.family().is_linear();
         is_timed.then_some(self)
+    }
+
+    fn coarser(&self) -> Option<&dyn Coarse> {
+        self.coarser.as_deref().map(|coarser| coarser as &dyn Coarse)
+    }
+}
+
+impl<F: Family> Coarse for Formulated<F> {
+    fn prolong(&self, x: &[f64]) -> Vec<f64> {
+        self.task.family().prolong(x)
     }
 }
 

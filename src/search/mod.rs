@@ -113,7 +113,7 @@ pub use evaluation::Evaluation;
 pub use failure::Failure;
 pub use oracle::{Best, Oracle, Stop, TracePoint, Watch};
 pub use points::{Bounds, BoundsError, Points, PointsIter, PointsIterMut};
-pub use problem::{Composite, Problem, Timed};
+pub use problem::{Coarse, Composite, Problem, Timed};
 pub use rng::Rng;
 pub use terms::{Linearisation, Multipliers, Piece, PieceId, Shape, Term};
 pub use timed::{Bend, ErrorSlopes, LinearLimit, LinearLimits, TimedWeights};

@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 use super::evaluation::Evaluation;
 use super::failure::Failure;
 use super::points::{Bounds, Points};
-use super::problem::{Composite, Problem, Timed};
+use super::problem::{Coarse, Composite, Problem, Timed};
 use super::rng::Rng;
 use super::terms::{Linearisation, Multipliers, Shape};
 use super::timed::{Bend, ErrorSlopes, LinearLimits, TimedWeights};
@@ -83,6 +83,8 @@ pub struct TracePoint {
 #[expect(missing_debug_implementations, reason = "a problem need not be printable")]
 pub struct Oracle<'a> {
     problem: &'a dyn Problem,
+    /// The coarser problems down to the one that is asked, where it is not the problem itself.
+    coarser: Vec<&'a dyn Coarse>,
     budget: u64,
     watch: &'a Watch,
     started: Instant,
@@ -96,7 +98,7 @@ pub struct Oracle<'a> {
     /// Weights and shapes of the cost's terms, once they are known.
     form: Option<Vec<(f64, Shape)>>,
     best: Option<Best>,
-    /// The best of the search that is [`within`](Self::within).
+    /// The best of the search that is [`within`](Self::within), a point of the problem that is asked.
     best_within: Option<Best>,
     trace: Vec<TracePoint>,
 }
@@ -106,6 +108,7 @@ impl<'a> Oracle<'a> {
     pub fn new(problem: &'a dyn Problem, budget: u64, watch: &'a Watch) -> Self {
         Self {
             problem,
+            coarser: Vec::new(),
             budget,
             watch,
             started: Instant::now(),
@@ -168,7 +171,7 @@ impl<'a> Oracle<'a> {
         self.in_problem
     }
 
-    /// The best so far; a cost that is infinite or NaN is never best.
+    /// The best so far, a point of the whole problem; a cost that is infinite or NaN is never best.
     pub fn best(&self) -> Option<&Best> {
         self.best.as_ref()
     }
@@ -327,15 +330,40 @@ impl<'a> Oracle<'a> {
         let outcome = search(self);
         self.budget = budget;
         let own = std::mem::replace(&mut self.best_within, outer);
-        if let Some(own) = &own {
-            let is_better = |best: &Best| own.evaluation.cost < best.evaluation.cost;
-            if self.best_within.as_ref().is_none_or(is_better) {
-                self.best_within = Some(own.clone());
-            }
+        if let Some(own) = own.clone() {
+            self.add_to_search(own);
         }
         match outcome {
             Err(stop) if stop != Stop::BudgetSpent || self.remaining() == 0 => Err(stop),
             _ => Ok(own),
+        }
+    }
+
+    /// Has a search work on the [coarser](Problem::coarser) problem, where there is one, with the same budget. Its
+    /// evaluations count here; the best of its points, and those that it ends with, become points of this problem.
+    pub fn on_coarser(
+        &mut self,
+        search: impl FnOnce(&mut Self) -> Result<Vec<Best>, Stop>,
+    ) -> Result<Option<Vec<Best>>, Stop> {
+        let Some(coarse) = self.problem.coarser() else { return Ok(None) };
+        self.check_dimension(coarse.prolong(&vec![0.0; coarse.bounds().len()]).len())?;
+        let prolong = |best: Best| Best { x: coarse.prolong(&best.x), ..best };
+        let (problem, outer) = (self.problem, self.best_within.take());
+        self.problem = coarse;
+        self.coarser.push(coarse);
+        let outcome = search(self);
+        self.coarser.pop();
+        self.problem = problem;
+        if let Some(own) = std::mem::replace(&mut self.best_within, outer) {
+            self.add_to_search(prolong(own));
+        }
+        Ok(Some(outcome?.into_iter().map(prolong).collect()))
+    }
+
+    fn add_to_search(&mut self, found: Best) {
+        let is_better = |best: &Best| found.evaluation.cost < best.evaluation.cost;
+        if self.best_within.as_ref().is_none_or(is_better) {
+            self.best_within = Some(found);
         }
     }
 
@@ -406,7 +434,9 @@ impl<'a> Oracle<'a> {
             self.best_within = Some(Best { x: x.to_vec(), evaluation });
         }
         if lower(&self.best) {
-            self.best = Some(Best { x: x.to_vec(), evaluation });
+            let levels = self.coarser.iter().rev();
+            let x = levels.fold(x.to_vec(), |x, coarse| coarse.prolong(&x));
+            self.best = Some(Best { x, evaluation });
             self.trace.push(TracePoint {
                 evaluation: self.evaluations,
                 best: evaluation,

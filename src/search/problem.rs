@@ -45,6 +45,19 @@ pub trait Problem: Send + Sync {
     fn timed(&self) -> Option<&dyn Timed> {
         None
     }
+
+    /// The same problem in fewer variables, where there is one to search first; always or never.
+    fn coarser(&self) -> Option<&dyn Coarse> {
+        None
+    }
+}
+
+/// A problem over some points of a finer one, in fewer variables and at the same cost, up to how finely each evaluates it.
+///
+/// It has derivatives where the finer one has, and the same terms and weights.
+pub trait Coarse: Problem {
+    /// The point of the finer problem, within its box, that a point is: linear in it.
+    fn prolong(&self, x: &[f64]) -> Vec<f64>;
 }
 
 /// A cost that is a sum of convex functions of smooth pieces, `J(x) = Σ_k w_k φ_k(v_k(x))`.

@@ -123,6 +123,16 @@ pub trait Family: Debug + Clone + Send + Sync + 'static {
         0.0
     }
 
+    /// The family of some of these paths with fewer coefficients, where there is one to search first.
+    fn coarser(&self) -> Option<Self> {
+        None
+    }
+
+    /// The same path's coefficients in the family whose [coarser](Self::coarser) one this is; they are linear in its own.
+    fn prolong(&self, coefficients: &[f64]) -> Vec<f64> {
+        coefficients.to_vec()
+    }
+
     /// Whether derivatives of the path are linear in the coefficients, so that [`sites`](Self::sites) has all that they
     /// may do.
     fn is_linear(&self) -> bool {

@@ -30,6 +30,12 @@ impl SinePolynomial {
         Self { spans, basis: Basis::new(terms) }
     }
 
+    /// The family between the same configurations with another number of terms.
+    #[must_use]
+    pub(super) fn with_terms(&self, terms: usize) -> Self {
+        Self { spans: self.spans.clone(), basis: Basis::new(terms) }
+    }
+
     /// Number of joints.
     pub fn joints(&self) -> usize {
         self.spans.len()

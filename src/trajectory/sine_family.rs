@@ -11,6 +11,9 @@ use super::sine::SinePolynomial;
 use crate::lanes::Lanes;
 use crate::scalar::Scalar;
 
+/// The fewest terms that a search begins with, where there are more: the paper's.
+const COARSEST: usize = 2;
+
 /// One joint's path.
 #[derive(Debug)]
 pub struct SineCurve<'a> {
@@ -114,6 +117,15 @@ impl Family for SinePolynomial {
 
     fn peaks(&self, samples: &Samples, coefficients: &[f64]) -> Peaks {
         samples.peaks(&self.path(coefficients))
+    }
+
+    fn coarser(&self) -> Option<Self> {
+        (self.terms() > COARSEST).then(|| self.with_terms(self.terms() - 1))
+    }
+
+    fn prolong(&self, coefficients: &[f64]) -> Vec<f64> {
+        let joints = coefficients.chunks_exact(self.terms());
+        joints.flat_map(|own| own.iter().copied().chain([0.0])).collect()
     }
 
     fn curve(&self, joint: usize, own: &[f64]) -> SineCurve<'_> {

@@ -14,6 +14,9 @@
 //! the same few points, whatever their `r`; so a start that ends there is followed once more, with
 //! the problem's own weights throughout.
 //!
+//! Where a problem has a [coarser](crate::search::Problem::coarser) one, random starts are followed on the coarsest, and the
+//! best of their ends on finer ones, fewer on each (successive halving, Jamieson & Talwalkar 2016, arXiv:1502.07943).
+//!
 //! On a [`Timed`](crate::search::Timed) cost the steps are others, for many variables: see `timed.rs`.
 //!
 //! A start has been followed to its end when, with the problem's own weights, a step promises next to
@@ -36,7 +39,7 @@ use serde::{Deserialize, Serialize};
 
 use super::method::Optimiser;
 use crate::input::{count, optional_count, positive, share};
-use crate::search::{Bounds, Oracle, Rng, Stop};
+use crate::search::{Best, Bounds, Oracle, Rng, Stop};
 use iterate::Iterate;
 use subproblem::{Region, Step};
 
@@ -121,11 +124,37 @@ impl Scp {
             self.follow(oracle, first)?;
             random = self.starts.map_or(0, |starts| starts.get() - 1);
         }
-        for _ in 0..random {
-            let start = oracle.timed_start(rng);
-            self.follow(oracle, &start.unwrap_or_else(|| Self::start(oracle.bounds(), rng)))?;
+        self.follow_random(random, oracle, rng).map(|_| ())
+    }
+
+    /// Follows so many random starts on the coarsest problem, and on each finer one the best ends of the one before. Its own
+    /// best ends, each once.
+    fn follow_random(
+        &self,
+        starts: usize,
+        oracle: &mut Oracle<'_>,
+        rng: &mut Rng,
+    ) -> Result<Vec<Best>, Stop> {
+        let coarse = oracle.on_coarser(|oracle| self.follow_random(starts, oracle, rng))?;
+        let followed = coarse.as_ref().map_or(starts, Vec::len);
+        let mut ends = Vec::new();
+        for k in 0..followed {
+            let random = || Self::random(oracle, rng);
+            let start = coarse.as_ref().map_or_else(random, |ends| ends[k].x.clone());
+            let budget = oracle.remaining();
+            ends.extend(oracle.within(budget, |oracle| self.follow(oracle, &start).map(drop))?);
         }
-        Ok(())
+        ends.sort_by(|a, b| a.evaluation.cost.total_cmp(&b.evaluation.cost));
+        ends.dedup_by(|b, a| {
+            b.evaluation.cost - a.evaluation.cost <= SAME * a.evaluation.cost.abs()
+        });
+        ends.truncate(followed.div_ceil(REDUCTION));
+        Ok(ends)
+    }
+
+    /// Draws a start, in the problem's own way where it has one.
+    fn random(oracle: &Oracle<'_>, rng: &mut Rng) -> Vec<f64> {
+        oracle.timed_start(rng).unwrap_or_else(|| Self::start(oracle.bounds(), rng))
     }
 
     /// Starts of a run that follows no other optimiser.
@@ -193,6 +222,12 @@ fn next_radius(radius: f64, kept: f64, reach: f64) -> f64 {
 
 /// By how much the weights of norms grow at a time.
 const GROWTH: f64 = 10.0;
+
+/// Of the starts on one level, one in so many goes on to the next finer one.
+const REDUCTION: usize = 4;
+
+/// Ends whose costs differ by less than this share are one.
+const SAME: f64 = 1e-5;
 
 /// Share of the start's cost below which a cost is as good as none.
 const NOTHING: f64 = 1e-6;
