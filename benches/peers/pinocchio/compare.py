@@ -91,7 +91,7 @@ def write_problem(problem, motions):
 
     `motions`: how many, then the coefficients of each, joint by joint, drawn from the box.
     """
-    table = tomllib.loads((SOURCE / "problem/defaults.toml").read_text())
+    table = tomllib.loads((SOURCE / "reorientation/defaults.toml").read_text())
     task, trajectory = table["task"], table["trajectory"]
     robot = tomllib.loads((SOURCE / f"robot/{task['robot']}.toml").read_text())
     base, joints = robot["base"], robot["joint"]
