@@ -26,6 +26,7 @@ speed:
 # Python 3.11 and g++
 peers:
     benches/peers/casadi/run.sh
+    benches/peers/casadi/run.sh --free-form
     benches/peers/optimisers/run.sh
     benches/peers/pinocchio/run.sh
 

@@ -45,14 +45,11 @@ class Solver:
         }
 
     def solve(self, start):
-        """Solves from the given coefficients and their shortest duration; the clock runs while IPOPT
-        does. What is found is evaluated densely, at the shortest duration within the limits."""
+        """Solves from the given coefficients and their shortest duration. What is found is evaluated
+        densely, at the shortest duration within the limits."""
         duration = evaluate(self.task, np.reshape(start, self.shape), steps=1).shortest
         guess = np.append(start, duration)
-        clock, busy = time.perf_counter(), time.process_time()
-        solution = self.ipopt(x0=guess, **self.bounds)
-        seconds, busy = time.perf_counter() - clock, time.process_time() - busy
-        x, stats = solution["x"].full().ravel(), self.ipopt.stats()
+        x, multipliers, told = run(self.ipopt, guess, self.bounds)
         motion = evaluate(self.task, x[:-1].reshape(self.shape))
         return {
             "coefficients": x[:-1].tolist(),
@@ -61,9 +58,22 @@ class Solver:
             "residual_deg": motion.residual_deg(),
             # By how much the duration found is too short for the limits at all times.
             "excess": motion.shortest / x[-1] - 1,
-            "multiplier": float(ca.norm_2(solution["lam_g"][:3])),
-            "seconds": seconds,
-            "processor_seconds": busy,
-            "ending": stats["return_status"],
-            "iterations": stats["iter_count"],
+            "multiplier": float(np.linalg.norm(multipliers[:3])),
+            **told,
         }
+
+
+def run(ipopt, guess, bounds):
+    """Solves from a guess: the point found, the rows' multipliers, and what is told of any solution. The
+    clock runs while IPOPT does."""
+    clock, busy = time.perf_counter(), time.process_time()
+    solution = ipopt(x0=guess, **bounds)
+    seconds, busy = time.perf_counter() - clock, time.process_time() - busy
+    stats = ipopt.stats()
+    told = {
+        "seconds": seconds,
+        "processor_seconds": busy,
+        "ending": stats["return_status"],
+        "iterations": stats["iter_count"],
+    }
+    return solution["x"].full().ravel(), solution["lam_g"].full().ravel(), told

@@ -1,4 +1,4 @@
-"""The paper's task in NumPy: its numbers, the family of paths, and a dense evaluation of a motion.
+"""The paper's task in NumPy: its numbers, both families of paths, and a dense evaluation of a motion.
 
 Equation numbers are those of Xiao et al. (2023). Written apart from the Rust code, from the equations:
 the momentum is summed link by link in the base's axes with its centre of mass at the origin, the
@@ -60,7 +60,7 @@ class Task:
     """Robot, ends, limits and weights; `terms` free coefficients per joint."""
 
     def __init__(self):
-        table = tomllib.loads((SOURCE / "problem/defaults.toml").read_text())
+        table = tomllib.loads((SOURCE / "reorientation/defaults.toml").read_text())
         task, self.terms = table["task"], table["trajectory"]["terms"]
         robot = tomllib.loads((SOURCE / f"robot/{task['robot']}.toml").read_text())
         self.box = np.array(table["trajectory"]["box"]["coefficient"][: self.terms])
@@ -68,7 +68,8 @@ class Task:
         self.base_mass, self.base_inertia = base["mass"], inertia(base["inertia"])
         self.mount = np.array(base["mount"], float)
         self.links = [link(joint) for joint in robot["joint"]]
-        lower, upper = np.radians([joint["range_deg"] for joint in robot["joint"]]).T
+        self.ranges = np.radians([joint["range_deg"] for joint in robot["joint"]]).T
+        lower, upper = self.ranges
         self.amplitude, self.centre = (upper - lower) / 2, (upper + lower) / 2
         start, goal = (
             np.arcsin((np.radians(task[end]["joints_deg"]) - self.centre) / self.amplitude)
@@ -134,6 +135,49 @@ def joint_path(task, coefficients, tau):
     return path
 
 
+class Spline:
+    """A path of degree 3 over equal pieces, the third derivative by `τ` constant on each: `states`, angle
+    and two derivatives at every knot, of shape (pieces + 1, 3, joints), and `jerks` of (pieces, joints)."""
+
+    def __init__(self, start, jerks):
+        self.jerks, self.width = np.array(jerks), 1 / len(jerks)
+        state = np.array([start, np.zeros_like(start), np.zeros_like(start)])
+        states = [state]
+        for jerk in self.jerks:
+            state = np.array(self.along(state, jerk, self.width)[:3])
+            states.append(state)
+        self.states = np.array(states)
+
+    @classmethod
+    def of_points(cls, points):
+        """With the control points of a clamped B-spline, one row per joint, differentiated three times
+        (de Boor 2001, doi:10.1007/978-1-4612-6333-3, chapter X)."""
+        points = np.array(points).T
+        start, pieces = points[0], len(points) - 3
+        knots = np.concatenate([np.zeros(3), np.linspace(0, 1, pieces + 1), np.ones(3)])
+        for order in (1, 2, 3):
+            spans = knots[4 : pieces + 7 - order] - knots[order : pieces + 3]
+            points = (4 - order) * np.diff(points, axis=0) / spans[:, None]
+        return cls(start, points)
+
+    @staticmethod
+    def along(state, jerk, s):
+        """Angle and three derivatives a time `s` after a knot."""
+        angle, rate, acceleration = state
+        return [
+            angle + s * (rate + s * (acceleration / 2 + s * jerk / 6)),
+            rate + s * (acceleration + s * jerk / 2),
+            acceleration + s * jerk,
+            jerk + 0 * s,
+        ]
+
+    def path(self, tau):
+        """Angle and three derivatives by `τ`, shape (4, joints, times)."""
+        piece = np.minimum((tau / self.width).astype(int), len(self.jerks) - 1)
+        state = self.states[piece].transpose(1, 2, 0)
+        return np.array(self.along(state, self.jerks[piece].T, tau - piece * self.width))
+
+
 def base_rate(task, angles, rates):
     """Angular rate of the base at zero momentum (eqs. 5–7), base axes; all of shape (…, times)."""
     times = angles.shape[1]
@@ -177,11 +221,16 @@ class Motion:
         return np.degrees(2 * np.arcsin(min(self.error, 1.0)))
 
 
-def evaluate(task, coefficients, steps=2000, samples=20_001):
+def evaluate(task, coefficients, steps=2000):
     """Evaluates the path with coefficients of shape (joints, terms), independent of any solver."""
+    return evaluate_path(task, lambda tau: joint_path(task, coefficients, tau), steps)
+
+
+def evaluate_path(task, path, steps, samples=20_001):
+    """Evaluates a path, a function of times that says angles and three derivatives by `τ`."""
     offset, width = np.sqrt(3) / 6, 1 / steps
     tau = np.add.outer(np.arange(steps), [0.5 - offset, 0.5 + offset]).ravel() * width
-    angles, rates, *_ = joint_path(task, coefficients, tau)
+    angles, rates, *_ = path(tau)
     nodes = base_rate(task, angles, rates).reshape(steps, 2, 3)
     attitude = task.start_base
     for first, second in nodes:
@@ -189,6 +238,6 @@ def evaluate(task, coefficients, steps=2000, samples=20_001):
         angle = np.linalg.norm(turn)
         half = np.sinc(angle / 2 / np.pi) / 2 * turn
         attitude = product(attitude, np.concatenate([[np.cos(angle / 2)], half]))
-    path = joint_path(task, coefficients, np.linspace(0, 1, samples))
-    peaks = np.abs(path[1:]).max(axis=(1, 2)) / task.limits
+    derivatives = path(np.linspace(0, 1, samples))[1:]
+    peaks = np.abs(derivatives).max(axis=(1, 2)) / task.limits
     return Motion(np.linalg.norm(attitude[1:]), max(peaks ** (1 / np.arange(1, 4))))

@@ -1,7 +1,13 @@
 #!/usr/bin/env bash
-# Compares `scp` with CasADi and IPOPT: ./run.sh [STARTS]. Needs Python 3.11 or later, gcc and PyPI.
-# Both run on one core, CPU=1 unless set otherwise, with one thread each.
+# Compares `scp` with CasADi and IPOPT: ./run.sh [STARTS], or of free-form motions ./run.sh --free-form [STARTS
+# [PIECES …]]. Needs Python 3.11 or later, gcc and PyPI. All run on one core, CPU=1 unless set otherwise, with one
+# thread each.
 . "$(dirname "$0")/../environment.sh"
+comparison=compare.py
+if [ "${1-}" = --free-form ]; then
+    comparison=compare_free_form.py
+    shift
+fi
 cargo build --release --locked --no-default-features --example peers_starts
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-taskset -c "${CPU:-1}" "$python" "$here/compare.py" "$target/release/examples/peers_starts" "$folder" "${1:-100}"
+taskset -c "${CPU:-1}" "$python" "$here/$comparison" "$target/release/examples/peers_starts" "$folder" "$@"
