@@ -11,7 +11,7 @@ use super::identity::Identity;
 use super::subject::Instance;
 use crate::input::{Document, InputError};
 use crate::optimiser::{Optimiser, Settings};
-use crate::search::{Failure, Oracle, Rng, Stop};
+use crate::search::{Failure, Oracle, Problem, Rng, Stop};
 
 /// One optimiser of the field.
 #[derive(Clone)]
@@ -64,6 +64,10 @@ impl Optimiser for Catalogued {
 
     fn needs_derivatives(&self) -> bool {
         self.0.optimiser().needs_derivatives()
+    }
+
+    fn lacks(&self, problem: &dyn Problem) -> Option<&'static str> {
+        self.0.optimiser().lacks(problem)
     }
 
     fn parts(&self) -> Option<(Box<dyn Optimiser>, usize)> {
@@ -126,6 +130,13 @@ impl Entrant {
     /// Whether it can search only problems with derivatives.
     pub fn needs_derivatives(&self) -> bool {
         self.needs_derivatives
+    }
+
+    /// What it needs of a problem that this one does not give, if anything.
+    pub(super) fn lacks(&self, problem: &dyn Problem) -> Option<&'static str> {
+        let unknown =
+            || (self.needs_derivatives && problem.slopes().is_none()).then_some("derivatives");
+        self.optimiser.as_ref().map_or_else(unknown, |optimiser| optimiser.lacks(problem))
     }
 
     /// The optimiser itself.

@@ -194,12 +194,11 @@ fn check_entry(entry: &Entry, all: &[Instance], document: &Document) -> Result<(
             });
         }
         let space = entrant.space(instance);
-        let lacks = entrant.needs_derivatives
-            && instance.subject.problem(&space).is_ok_and(|p| p.composite().is_none());
-        if lacks {
+        let problem = instance.subject.problem(&space).ok();
+        if let Some(lacks) = problem.and_then(|problem| entrant.lacks(&*problem)) {
             let of = if space.is_empty() { String::new() } else { format!(" in `{space}`") };
             return error(format!(
-                "`{}` needs derivatives, which `{name}`{of} does not give",
+                "`{}` needs {lacks}, which `{name}`{of} does not give",
                 entrant.kind
             ));
         }

@@ -29,12 +29,15 @@
 
 use std::iter::repeat_with;
 
-use argmin_testfunctions::{ackley, rastrigin, rosenbrock, sphere, styblinski_tang};
+use argmin_testfunctions::{
+    ackley, ackley_derivative, rastrigin, rastrigin_derivative, rosenbrock, rosenbrock_derivative,
+    sphere, sphere_derivative, styblinski_tang, styblinski_tang_derivative,
+};
 use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::search::{Bounds, Evaluation, Failure, Problem};
+use crate::search::{Bounds, Differentiable, Evaluation, Failure, Problem, Slopes, Subgradient};
 
 /// A function of any number of variables with one known minimum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -89,6 +92,18 @@ impl TestFunction {
         }
     }
 
+    /// `∂f/∂z_j`; at the minimum of Ackley's function, which is a kink, zero.
+    pub fn gradient(self, z: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Sphere => sphere_derivative(z),
+            Self::Ellipsoid => ellipsoid_gradient(z),
+            Self::Rosenbrock => rosenbrock_derivative(z),
+            Self::Rastrigin => rastrigin_derivative(z),
+            Self::Ackley => ackley_derivative(z),
+            Self::StyblinskiTang => styblinski_tang_derivative(z),
+        }
+    }
+
     /// Every component of `o`, where `f` is least.
     fn minimiser(self) -> f64 {
         match self {
@@ -102,8 +117,16 @@ impl TestFunction {
 
 /// Condition number 10⁶.
 fn ellipsoid(z: &[f64]) -> f64 {
-    let last = (z.len() - 1).max(1) as f64;
-    z.iter().enumerate().map(|(j, z)| 1e6_f64.powf(j as f64 / last) * z * z).sum()
+    ellipsoid_weights(z.len()).zip(z).map(|(weight, z)| weight * z * z).sum()
+}
+
+fn ellipsoid_gradient(z: &[f64]) -> Vec<f64> {
+    ellipsoid_weights(z.len()).zip(z).map(|(weight, z)| 2.0 * weight * z).collect()
+}
+
+fn ellipsoid_weights(n: usize) -> impl Iterator<Item = f64> {
+    let last = (n - 1).max(1) as f64;
+    (0..n).map(move |j| 1e6_f64.powf(j as f64 / last))
 }
 
 /// A [`TestFunction`], shifted and rotated within `[−5, 5]ⁿ`.
@@ -155,21 +178,38 @@ impl Analytic {
     }
 }
 
+impl Analytic {
+    /// `R (x − x*) + o`.
+    fn placed(&self, x: &[f64]) -> DVector<f64> {
+        let offset = DVector::from_column_slice(x) - &self.optimum;
+        (&self.rotation * offset).add_scalar(self.function.minimiser())
+    }
+}
+
 impl Problem for Analytic {
     fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
     fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
-        let own = self.function.minimiser();
-        let offset = DVector::from_column_slice(x) - &self.optimum;
-        let z = (&self.rotation * offset).add_scalar(own);
-        let cost = self.function.value(z.as_slice()) - self.minimum;
+        let cost = self.function.value(self.placed(x).as_slice()) - self.minimum;
         Ok(cost.into())
+    }
+
+    fn slopes(&self) -> Option<Slopes<'_>> {
+        Some(Slopes::Own(self))
     }
 
     fn least_cost(&self) -> Option<f64> {
         Some(0.0)
+    }
+}
+
+impl Differentiable for Analytic {
+    fn subgradient(&self, x: &[f64]) -> Result<Subgradient, Failure> {
+        let gradient = self.function.gradient(self.placed(x).as_slice());
+        let slopes = self.rotation.tr_mul(&DVector::from_vec(gradient));
+        Ok(Subgradient { evaluation: self.evaluate(x)?, slopes })
     }
 }
 

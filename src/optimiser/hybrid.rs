@@ -11,7 +11,7 @@ use super::l_shade::LShade;
 use super::method::Optimiser;
 use super::scp::Scp;
 use crate::input::share;
-use crate::search::{Oracle, Rng, Stop};
+use crate::search::{Oracle, Problem, Rng, Stop};
 
 /// Settings of a hybrid whose first search is chosen by `S`, which shows its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -69,5 +69,9 @@ impl<S: AsRef<dyn Optimiser> + Send + Sync> Optimiser for Hybrid<S> {
 
     fn needs_derivatives(&self) -> bool {
         true
+    }
+
+    fn lacks(&self, problem: &dyn Problem) -> Option<&'static str> {
+        self.refine.lacks(problem)
     }
 }

@@ -1,6 +1,6 @@
 //! What every optimiser is.
 
-use crate::search::{Oracle, Rng, Stop};
+use crate::search::{Oracle, Problem, Rng, Stop};
 
 /// A method of minimisation.
 ///
@@ -24,5 +24,10 @@ pub trait Optimiser: Send + Sync {
     /// Whether it can search only problems with derivatives.
     fn needs_derivatives(&self) -> bool {
         false
+    }
+
+    /// What it needs of a problem that this one does not give, if anything, such as `derivatives`.
+    fn lacks(&self, problem: &dyn Problem) -> Option<&'static str> {
+        (self.needs_derivatives() && problem.slopes().is_none()).then_some("derivatives")
     }
 }

@@ -1,4 +1,4 @@
-//! First and second derivatives of the time-free cost, for optimisers that use them.
+//! First and second derivatives of the cost, for optimisers that use them.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, UnitQuaternion, Vector3};
 
@@ -6,7 +6,9 @@ use super::fitness::Reorientation;
 use super::measure::Tables;
 use crate::attitude::{RotationCurvature, RotationSlopes};
 use crate::lanes::{LaneWork, Lanes};
-use crate::search::{ErrorSlopes, Failure, Linearisation, Multipliers, Piece, PieceId};
+use crate::search::{
+    ErrorSlopes, Failure, LinearLimits, Linearisation, Multipliers, Piece, PieceId, TimedWeights,
+};
 use crate::trajectory::{Curve, Family, LocalPeak, duration_asked};
 
 /// How far below the largest, as a share of it, a part may lie to be linearised too.
@@ -16,15 +18,49 @@ impl<F: Family> Reorientation<F> {
     /// The time-free cost's parts: the vector part of the base's error, and the duration that each
     /// local peak of rate, acceleration and jerk asks for.
     pub(super) fn linearise(&self, coefficients: &[f64]) -> Linearisation {
-        let mut samples = self.workspace().samples;
-        self.width().run(Sampling { problem: self, coefficients, samples: &mut samples });
         let slopes = self.width().run(Slopes { problem: self, coefficients });
-        let limits = &self.task().limits;
-        let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
+        let places = self.local_peaks(coefficients, NEAR);
         let curves: Vec<_> = self.curves(coefficients).collect();
         let durations =
             places.into_iter().map(|place| self.duration_piece(&curves[place.joint], place));
         self.terms().time_free(self.base_error_pieces(&slopes), durations.collect())
+    }
+
+    /// A subgradient of the cost of a motion that lasts `duration` seconds: its slopes by the coefficients, and that by the
+    /// duration.
+    pub(super) fn slopes_over(&self, coefficients: &[f64], duration: f64) -> (DVector<f64>, f64) {
+        let weights = self.terms().timed();
+        // The error and the excess over the ranges do not follow the duration.
+        let untimed = TimedWeights { time: 0.0, ..weights };
+        let is_linear = self.family().is_linear();
+        let limits = if is_linear { self.limits(coefficients) } else { LinearLimits::default() };
+        let mut slopes = untimed.subgradient(&limits, &self.error_slopes(coefficients)).slopes;
+        let mut by_duration = weights.time;
+        let places = self.local_peaks(coefficients, 0.0);
+        let curves: Vec<_> = self.curves(coefficients).collect();
+        for order in 1..=3 {
+            let own = places.iter().filter(|place| place.order == order);
+            let asked = |place: &&LocalPeak| {
+                self.duration_for(place, curves[place.joint].derivatives::<4>(place.tau)[order])
+            };
+            let Some(place) = own.max_by(|a, b| asked(a).total_cmp(&asked(b))) else { continue };
+            let asked = self.duration_piece(&curves[place.joint], *place);
+            if asked.value > duration {
+                // The excess is (t / t_f)^p − 1, where the limit asks for t.
+                let rise =
+                    weights.excess * order as f64 * (asked.value / duration).powi(order as i32);
+                slopes.axpy(rise / asked.value, &asked.gradient, 1.0);
+                by_duration -= rise / duration;
+            }
+        }
+        (slopes, by_duration)
+    }
+
+    /// Local peaks of rate, acceleration and jerk that ask for no less than `share` of the longest duration asked for.
+    fn local_peaks(&self, coefficients: &[f64], share: f64) -> Vec<LocalPeak> {
+        let mut samples = self.workspace().samples;
+        self.width().run(Sampling { problem: self, coefficients, samples: &mut samples });
+        self.family().local_peaks(&samples, coefficients, &self.task().limits, share)
     }
 
     /// The base's error, for families whose derivatives are linear in their coefficients.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,8 +11,8 @@ use super::fitness::{Assessment, Reorientation};
 use super::measure::Workspace;
 use super::settings::Boxes;
 use crate::search::{
-    Bounds, BoundsError, Coarse, Composite, Evaluation, Failure, Linearisation, Multipliers,
-    Points, Problem, Timed,
+    Bounds, BoundsError, Coarse, Composite, Differentiable, Evaluation, Failure, Linearisation,
+    Multipliers, Points, Problem, Slopes, Subgradient, Timed,
 };
 use crate::trajectory::{Family, SinePolynomial, Spline};
 
@@ -201,11 +201,36 @@ impl<F: Family> Problem for Formulated<F> {
     fn coarser(&self) -> Option<&dyn Coarse> {
         self.coarser.as_deref().map(|coarser| coarser as &dyn Coarse)
     }
+
+    fn slopes(&self) -> Option<Slopes<'_>> {
+        Some(Slopes::Own(self))
+    }
 }
 
 impl<F: Family> Coarse for Formulated<F> {
     fn prolong(&self, x: &[f64]) -> Vec<f64> {
         self.task.family().prolong(x)
+    }
+}
+
+impl<F: Family> Differentiable for Formulated<F> {
+    fn subgradient(&self, x: &[f64]) -> Result<Subgradient, Failure> {
+        let (coefficients, duration) = self.decode(x);
+        let Some(duration) = duration else {
+            let is_linear = self.task().family().is_linear();
+            return if is_linear { Slopes::Timed(self) } else { Slopes::Composite(self) }.at(x);
+        };
+        let (slopes, by_duration) = self.task().slopes_over(&coefficients, duration);
+        let (slopes, by_duration) = match &self.powers {
+            Some(family) => {
+                let (slopes, through) = family.slopes_by_alpha(x, duration, slopes.as_slice());
+                (slopes, by_duration + through)
+            }
+            None => (slopes.data.into(), by_duration),
+        };
+        let slopes = slopes.into_iter().chain([by_duration]);
+        let slopes = DVector::from_iterator(x.len(), slopes);
+        Ok(Subgradient { evaluation: self.evaluate(x)?, slopes })
     }
 }
 

@@ -27,7 +27,7 @@ const ORDERS: usize = 4;
 
 impl<F: Family> Reorientation<F> {
     /// What the shortest duration follows from, and by how much joints leave their ranges.
-    fn limits(&self, coefficients: &[f64]) -> LinearLimits {
+    pub(super) fn limits(&self, coefficients: &[f64]) -> LinearLimits {
         let mut samples = self.workspace().samples;
         let (task, family, tables) = (self.task(), self.family(), self.tables());
         family.sample::<f64>(&tables.sampler, coefficients, &mut samples);

@@ -98,7 +98,14 @@
 //! let mut oracle = Oracle::new(&circle, 500, &watch);
 //! let _ = Scp::default().minimise(&mut oracle, &mut Rng::new(1));
 //! assert!((oracle.best().unwrap().evaluation.cost + 2.0).abs() < 1e-8);
+//!
+//! // The norm grows by 10 · 2 x along x, the sum by one.
+//! let there = circle.slopes().unwrap().at(&[2.0, 0.0])?;
+//! assert_eq!((there.evaluation.cost, there.slopes[0], there.slopes[1]), (22.0, 41.0, 1.0));
+//! # Ok::<(), Failure>(())
 //! ```
+//!
+//! Optimisers that ask for no more than a [`Subgradient`] search these problems and those that are [`Differentiable`].
 
 mod evaluation;
 mod failure;
@@ -106,6 +113,7 @@ mod oracle;
 mod points;
 mod problem;
 mod rng;
+mod subgradient;
 mod terms;
 mod timed;
 
@@ -113,7 +121,8 @@ pub use evaluation::Evaluation;
 pub use failure::Failure;
 pub use oracle::{Best, Oracle, Stop, TracePoint, Watch};
 pub use points::{Bounds, BoundsError, Points, PointsIter, PointsIterMut};
-pub use problem::{Coarse, Composite, Problem, Timed};
+pub use problem::{Coarse, Composite, Differentiable, Problem, Slopes, Timed};
 pub use rng::Rng;
+pub use subgradient::Subgradient;
 pub use terms::{Linearisation, Multipliers, Piece, PieceId, Shape, Term};
 pub use timed::{Bend, ErrorSlopes, LinearLimit, LinearLimits, TimedWeights};

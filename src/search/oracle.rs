@@ -10,6 +10,7 @@ use super::failure::Failure;
 use super::points::{Bounds, Points};
 use super::problem::{Coarse, Composite, Problem, Timed};
 use super::rng::Rng;
+use super::subgradient::Subgradient;
 use super::terms::{Linearisation, Multipliers, Shape};
 use super::timed::{Bend, ErrorSlopes, LinearLimits, TimedWeights};
 
@@ -242,6 +243,20 @@ impl<'a> Oracle<'a> {
         linearisation.check(x.len(), form)?;
         self.record(x, linearisation.evaluation());
         Ok(linearisation)
+    }
+
+    /// Evaluates one point together with a subgradient: one evaluation and one linearisation. A subgradient of another
+    /// length than the point's is a failure.
+    pub fn subgradient(&mut self, x: &[f64]) -> Result<Subgradient, Stop> {
+        self.check()?;
+        self.check_dimension(x.len())?;
+        let slopes = self.problem.slopes().ok_or(Stop::NoDerivatives)?;
+        self.begin();
+        self.linearisations += 1;
+        let subgradient = self.clocked(|| slopes.at(x))?;
+        subgradient.check(x.len())?;
+        self.record(x, subgradient.evaluation);
+        Ok(subgradient)
     }
 
     /// Evaluates one point of a [`Timed`](super::Timed) problem together with all that its cost follows from: one

@@ -6,6 +6,7 @@ use super::evaluation::Evaluation;
 use super::failure::Failure;
 use super::points::{Bounds, Points};
 use super::rng::Rng;
+use super::subgradient::Subgradient;
 use super::terms::{Linearisation, Multipliers};
 use super::timed::{Bend, ErrorSlopes, LinearLimits, TimedWeights};
 
@@ -50,6 +51,13 @@ pub trait Problem: Send + Sync {
     fn coarser(&self) -> Option<&dyn Coarse> {
         None
     }
+
+    /// Where subgradients of the cost come from, where the problem has them; always or never. Those of a composite or a
+    /// timed cost follow from its parts.
+    fn slopes(&self) -> Option<Slopes<'_>> {
+        let timed = || self.timed().map(Slopes::Timed);
+        self.composite().map(Slopes::Composite).or_else(timed)
+    }
 }
 
 /// A problem over some points of a finer one, in fewer variables and at the same cost, up to how finely each evaluates it.
@@ -58,6 +66,38 @@ pub trait Problem: Send + Sync {
 pub trait Coarse: Problem {
     /// The point of the finer problem, within its box, that a point is: linear in it.
     fn prolong(&self, x: &[f64]) -> Vec<f64>;
+}
+
+/// Where subgradients come from.
+#[derive(Clone, Copy)]
+#[expect(missing_debug_implementations, reason = "a problem need not be printable")]
+pub enum Slopes<'a> {
+    /// The terms of the cost.
+    Composite(&'a dyn Composite),
+    /// The parts of a timed cost.
+    Timed(&'a dyn Timed),
+    /// The problem itself.
+    Own(&'a dyn Differentiable),
+}
+
+impl Slopes<'_> {
+    /// The cost at a point of the box, with a subgradient.
+    pub fn at(self, x: &[f64]) -> Result<Subgradient, Failure> {
+        match self {
+            Self::Composite(problem) => Ok(problem.linearise(x)?.subgradient(x.len())),
+            Self::Timed(problem) => {
+                Ok(problem.weights().subgradient(&problem.limits(x)?, &problem.error(x)?))
+            }
+            Self::Own(problem) => problem.subgradient(x),
+        }
+    }
+}
+
+/// A cost whose subgradients a problem works out itself, because it has no terms to tell of.
+pub trait Differentiable: Problem {
+    /// The cost at a point of the box, with a subgradient. The cost is that of [`evaluate`](Problem::evaluate), to
+    /// rounding.
+    fn subgradient(&self, x: &[f64]) -> Result<Subgradient, Failure>;
 }
 
 /// A cost that is a sum of convex functions of smooth pieces, `J(x) = Σ_k w_k φ_k(v_k(x))`.

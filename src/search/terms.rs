@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::evaluation::Evaluation;
 use super::failure::Failure;
+use super::subgradient::Subgradient;
 
 /// A convex function `φ` of the values `v` of a term's pieces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -134,6 +135,23 @@ impl Term {
         larger(self.shape.of(values), self.floor)
     }
 
+    /// What the pieces' gradients are multiplied with in a subgradient of `w φ(v)`: at a kink that of the first of the
+    /// largest pieces of a maximum, and none of a norm or of a hinge's piece that is zero.
+    fn weights(&self) -> Vec<f64> {
+        let values = self.pieces.iter().map(|piece| piece.value);
+        let value = self.value();
+        match self.shape {
+            Shape::Norm if value == 0.0 => vec![0.0; self.pieces.len()],
+            Shape::Norm => values.map(|v| self.weight * v / value).collect(),
+            Shape::Max => {
+                let first = self.pieces.iter().position(|piece| piece.value == value);
+                let weight = |i| if Some(i) == first { self.weight } else { 0.0 };
+                (0..self.pieces.len()).map(weight).collect()
+            }
+            Shape::Hinge => values.map(|v| if v > 0.0 { self.weight } else { 0.0 }).collect(),
+        }
+    }
+
     /// By how much each piece changes over a step, to first order.
     pub fn changes(&self, step: &DVector<f64>) -> Vec<f64> {
         // Of the two orders in which the products can be summed the first is that of a matrix times a vector.
@@ -181,6 +199,19 @@ impl Linearisation {
     /// `J`.
     pub fn cost(&self) -> f64 {
         self.terms.iter().map(Term::cost).sum()
+    }
+
+    /// Cost and violation, and a subgradient of the cost in so many variables.
+    pub fn subgradient(&self, variables: usize) -> Subgradient {
+        let mut slopes = DVector::zeros(variables);
+        for term in &self.terms {
+            for (piece, weight) in term.pieces.iter().zip(term.weights()) {
+                if weight != 0.0 {
+                    slopes.axpy(weight, &piece.gradient, 1.0);
+                }
+            }
+        }
+        Subgradient { evaluation: self.evaluation(), slopes }
     }
 
     /// The weight and shape of every term.

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::evaluation::Evaluation;
 use super::failure::Failure;
+use super::subgradient::Subgradient;
 
 /// Weights of time, error and excess; finite and not negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,6 +71,20 @@ impl LinearLimit {
         own.iter().zip(&self.slopes).map(|(d, slope)| d * slope).sum()
     }
 
+    /// Adds so many times the slopes of the time, or for a power of zero the excess, that it asks for at the point.
+    fn add_slopes(&self, weight: f64, sum: &mut DVector<f64>) {
+        let size = self.value.abs();
+        if size == 0.0 {
+            return;
+        }
+        let by_size = match self.power {
+            0 => 1.0,
+            power => self.asks(size) / (f64::from(power) * size),
+        };
+        let own = sum.as_mut_slice()[self.first..].iter_mut().zip(&self.slopes);
+        own.for_each(|(sum, slope)| *sum += weight * by_size * self.value.signum() * slope);
+    }
+
     /// The time, or for a power of zero the excess, that it asks for with another value.
     pub fn asks(&self, value: f64) -> f64 {
         let value = value.abs();
@@ -91,6 +106,24 @@ impl TimedWeights {
     /// Cost and violation.
     pub fn evaluation(&self, limits: &LinearLimits, error: &ErrorSlopes) -> Evaluation {
         Evaluation::new(self.cost(limits, error), limits.excess)
+    }
+
+    /// Cost and violation, and a subgradient of the cost.
+    pub fn subgradient(&self, limits: &LinearLimits, error: &ErrorSlopes) -> Subgradient {
+        let mut slopes = DVector::zeros(error.slopes.ncols());
+        let norm = error.value.norm();
+        if norm > 0.0 {
+            slopes.gemv_tr(self.error / norm, &error.slopes, &error.value, 0.0);
+        }
+        if let Some(limit) = limits.longest() {
+            limit.add_slopes(self.time, &mut slopes);
+        }
+        if limits.excess > 0.0
+            && let Some(limit) = limits.farthest()
+        {
+            limit.add_slopes(self.excess, &mut slopes);
+        }
+        Subgradient { evaluation: self.evaluation(limits, error), slopes }
     }
 }
 
@@ -120,6 +153,24 @@ impl Bend {
 }
 
 impl LinearLimits {
+    /// The first limit of those that ask for the longest time.
+    fn longest(&self) -> Option<&LinearLimit> {
+        Self::most(self.list.iter().filter(|limit| limit.power > 0))
+    }
+
+    /// The first of those that ask for the largest excess.
+    fn farthest(&self) -> Option<&LinearLimit> {
+        Self::most(self.list.iter().filter(|limit| limit.power == 0))
+    }
+
+    fn most<'a>(limits: impl Iterator<Item = &'a LinearLimit>) -> Option<&'a LinearLimit> {
+        limits.reduce(
+            |most, limit| {
+                if limit.asks(limit.value) > most.asks(most.value) { limit } else { most }
+            },
+        )
+    }
+
     /// Whether they are of so many variables.
     pub(super) fn check(&self, variables: usize) -> Result<(), Failure> {
         for LinearLimit { first, slopes, .. } in &self.list {

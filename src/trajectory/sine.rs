@@ -121,4 +121,28 @@ impl SinePolynomial {
             }
         }
     }
+
+    /// From a function's slopes by the coefficients those by the paper's `α`, and what the duration \[s\] changes through
+    /// the coefficients while `α` stays.
+    pub fn slopes_by_alpha(
+        &self,
+        alpha: &[f64],
+        duration: f64,
+        by_coefficient: &[f64],
+    ) -> (Vec<f64>, f64) {
+        let (mut by_alpha, mut by_duration) = (vec![0.0; self.dimension()], 0.0);
+        let mut unit = vec![0.0; self.terms()];
+        for k in 0..self.terms() {
+            let order = 6 + k as i32;
+            unit.fill(0.0);
+            self.basis.add_power(k, duration.powi(order), &mut unit);
+            for (joint, slopes) in by_coefficient.chunks_exact(self.terms()).enumerate() {
+                let slope: f64 = unit.iter().zip(slopes).map(|(unit, slope)| unit * slope).sum();
+                let place = k * self.joints() + joint;
+                by_alpha[place] = slope;
+                by_duration += alpha[place] * slope * f64::from(order) / duration;
+            }
+        }
+        (by_alpha, by_duration)
+    }
 }

@@ -39,7 +39,7 @@ use serde::{Deserialize, Serialize};
 
 use super::method::Optimiser;
 use crate::input::{count, optional_count, positive, share};
-use crate::search::{Best, Bounds, Oracle, Rng, Stop};
+use crate::search::{Best, Bounds, Oracle, Problem, Rng, Stop};
 use iterate::Iterate;
 use subproblem::{Region, Step};
 
@@ -103,6 +103,11 @@ impl Optimiser for Scp {
 
     fn needs_derivatives(&self) -> bool {
         true
+    }
+
+    fn lacks(&self, problem: &dyn Problem) -> Option<&'static str> {
+        let tells = problem.composite().is_some() || problem.timed().is_some();
+        (!tells).then_some("derivatives of the cost's terms")
     }
 
     fn parts(&self) -> Option<(Box<dyn Optimiser>, usize)> {
