@@ -36,8 +36,9 @@ pub(crate) const FAINT: RGBColor = RGBColor(200, 200, 200);
 /// What lies under everything.
 pub(crate) const PAPER: RGBColor = RGBColor(255, 255, 255);
 
-/// Okabe and Ito's colours without the yellow, which is too light for a line on white; black and grey last.
-pub(crate) const COLOURS: [RGBColor; 8] = [
+/// Okabe and Ito's colours without the yellow, which is too light for a line on white, black and grey; then Paul Tol's dark
+/// green (SRON/EPS/TN/09-002) and a violet.
+pub(crate) const COLOURS: [RGBColor; 10] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -46,6 +47,8 @@ pub(crate) const COLOURS: [RGBColor; 8] = [
     RGBColor(86, 180, 233),
     RGBColor(0, 0, 0),
     RGBColor(140, 140, 140),
+    RGBColor(17, 119, 51),
+    RGBColor(136, 46, 186),
 ];
 
 /// Colours of what comes from other programs: unlike those above and unlike each other, from Paul Tol's muted scheme
@@ -70,10 +73,12 @@ pub(crate) enum Marker {
     Plus,
     Cross,
     Star,
+    Left,
+    Right,
 }
 
 impl Marker {
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Circle,
         Self::Square,
         Self::Up,
@@ -82,6 +87,8 @@ impl Marker {
         Self::Plus,
         Self::Cross,
         Self::Star,
+        Self::Left,
+        Self::Right,
     ];
 
     /// Corners of the shape, in units of its radius.
@@ -109,6 +116,8 @@ impl Marker {
             Self::Diamond => on_circle(4, 0.0, &|_| 1.25),
             Self::Up => on_circle(3, -90.0, &|_| 1.25),
             Self::Down => on_circle(3, 90.0, &|_| 1.25),
+            Self::Left => on_circle(3, 180.0, &|_| 1.25),
+            Self::Right => on_circle(3, 0.0, &|_| 1.25),
             Self::Plus => cross(0.0),
             Self::Cross => cross(45.0),
             Self::Star => on_circle(10, -90.0, &|i| if i % 2 == 0 { 1.35 } else { 0.55 }),

@@ -9,12 +9,14 @@ use serde_json::Value;
 use super::cma_es::CmaEs;
 use super::de::De;
 use super::hybrid;
+use super::l_bfgs_b::LBfgsB;
 use super::l_shade::LShade;
 use super::method::Optimiser;
 use super::nelder_mead::NelderMead;
 use super::pso::Pso;
 use super::random::RandomSearch;
 use super::scp::Scp;
+use super::slsqp::Slsqp;
 
 /// From one line per optimiser: the choice of one with its settings, and what has to be known of each.
 macro_rules! catalogue {
@@ -56,6 +58,8 @@ catalogue! {
     "de": De,
     /// Another optimiser, then sequential convex programming from the best it found.
     "hybrid": Hybrid,
+    /// Limited-memory BFGS within the box, from random starts.
+    "l-bfgs-b": LBfgsB,
     /// Differential evolution that adapts its parameters and shrinks its population.
     "l-shade": LShade,
     /// The simplex method, from random starts.
@@ -66,6 +70,8 @@ catalogue! {
     "random": RandomSearch,
     /// Sequential convex programming from random starts.
     "scp": Scp,
+    /// Sequential least-squares quadratic programming from random starts.
+    "slsqp": Slsqp,
 }
 
 /// A search by an optimiser of the catalogue that needs no derivatives, then one that uses them.

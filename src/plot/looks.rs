@@ -7,8 +7,18 @@ use crate::figure::sheet::printable;
 use crate::figure::style::{COLOURS, DASHES, INK, Marker, OUTSIDE_COLOURS, PAPER, Stroke, mix};
 
 /// The kinds of optimisers in the order of their colours and markers.
-const KINDS: [&str; COLOURS.len()] =
-    ["scp", "hybrid", "cma-es", "l-shade", "de", "pso", "nelder-mead", "random"];
+const KINDS: [&str; COLOURS.len()] = [
+    "scp",
+    "hybrid",
+    "cma-es",
+    "l-shade",
+    "de",
+    "pso",
+    "nelder-mead",
+    "random",
+    "l-bfgs-b",
+    "slsqp",
+];
 
 /// Most optimisers in one panel.
 const MOST_IN_A_PANEL: usize = 8;

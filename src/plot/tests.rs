@@ -18,9 +18,10 @@ fn field(count: usize) -> Vec<Entrant> {
     let pso = Settings::by_name("pso").unwrap();
     let mut kinds = Settings::all();
     kinds.push(Settings::Hybrid(Hybrid { search: Box::new(pso), ..Hybrid::default() }));
+    let count_of_kinds = kinds.len();
     let label = |(i, settings): (usize, Settings)| {
-        let label =
-            format!("{}/time-free{}", settings.title(), ["", " population=150", " b"][i / 9 % 3]);
+        let more = ["", " population=150", " b"][i / count_of_kinds % 3];
+        let label = format!("{}/time-free{more}", settings.title());
         Entrant::from(settings).labelled(&label)
     };
     kinds.into_iter().cycle().take(count).enumerate().map(label).collect()

@@ -9,7 +9,7 @@ use crate::lanes::{LaneWork, Lanes};
 use crate::search::{
     ErrorSlopes, Failure, LinearLimits, Linearisation, Multipliers, Piece, PieceId, TimedWeights,
 };
-use crate::trajectory::{Curve, Family, LocalPeak, duration_asked};
+use crate::trajectory::{Curve, Family, LocalPeak, Peak, duration_asked};
 
 /// How far below the largest, as a share of it, a part may lie to be linearised too.
 const NEAR: f64 = 0.75;
@@ -19,7 +19,9 @@ impl<F: Family> Reorientation<F> {
     /// local peak of rate, acceleration and jerk asks for.
     pub(super) fn linearise(&self, coefficients: &[f64]) -> Linearisation {
         let slopes = self.width().run(Slopes { problem: self, coefficients });
-        let places = self.local_peaks(coefficients, NEAR);
+        let samples = self.samples(coefficients);
+        let limits = &self.task().limits;
+        let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
         let curves: Vec<_> = self.curves(coefficients).collect();
         let durations =
             places.into_iter().map(|place| self.duration_piece(&curves[place.joint], place));
@@ -36,15 +38,17 @@ impl<F: Family> Reorientation<F> {
         let limits = if is_linear { self.limits(coefficients) } else { LinearLimits::default() };
         let mut slopes = untimed.subgradient(&limits, &self.error_slopes(coefficients)).slopes;
         let mut by_duration = weights.time;
-        let places = self.local_peaks(coefficients, 0.0);
+        let samples = self.samples(coefficients);
+        let peaks = self.family().peaks(&samples, coefficients);
         let curves: Vec<_> = self.curves(coefficients).collect();
         for order in 1..=3 {
-            let own = places.iter().filter(|place| place.order == order);
-            let asked = |place: &&LocalPeak| {
-                self.duration_for(place, curves[place.joint].derivatives::<4>(place.tau)[order])
+            let share = |&(joint, peaks): &(usize, &[Peak; 3])| {
+                peaks[order - 1].value / self.task().limits.0[joint][order - 1]
             };
-            let Some(place) = own.max_by(|a, b| asked(a).total_cmp(&asked(b))) else { continue };
-            let asked = self.duration_piece(&curves[place.joint], *place);
+            let highest = peaks.0.iter().enumerate().max_by(|a, b| share(a).total_cmp(&share(b)));
+            let Some((joint, peaks)) = highest else { continue };
+            let place = LocalPeak { joint, order, tau: peaks[order - 1].tau };
+            let asked = self.duration_piece(&curves[joint], place);
             if asked.value > duration {
                 // The excess is (t / t_f)^p − 1, where the limit asks for t.
                 let rise =
@@ -56,11 +60,11 @@ impl<F: Family> Reorientation<F> {
         (slopes, by_duration)
     }
 
-    /// Local peaks of rate, acceleration and jerk that ask for no less than `share` of the longest duration asked for.
-    fn local_peaks(&self, coefficients: &[f64], share: f64) -> Vec<LocalPeak> {
+    /// The path with these coefficients, sampled.
+    fn samples(&self, coefficients: &[f64]) -> F::Samples {
         let mut samples = self.workspace().samples;
         self.width().run(Sampling { problem: self, coefficients, samples: &mut samples });
-        self.family().local_peaks(&samples, coefficients, &self.task().limits, share)
+        samples
     }
 
     /// The base's error, for families whose derivatives are linear in their coefficients.

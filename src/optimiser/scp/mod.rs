@@ -144,7 +144,7 @@ impl Scp {
         let followed = coarse.as_ref().map_or(starts, Vec::len);
         let mut ends = Vec::new();
         for k in 0..followed {
-            let random = || Self::random(oracle, rng);
+            let random = || Self::random_start(oracle, rng);
             let start = coarse.as_ref().map_or_else(random, |ends| ends[k].x.clone());
             let budget = oracle.remaining();
             ends.extend(oracle.within(budget, |oracle| self.follow(oracle, &start).map(drop))?);
@@ -157,14 +157,15 @@ impl Scp {
         Ok(ends)
     }
 
-    /// Draws a start, in the problem's own way where it has one.
-    fn random(oracle: &Oracle<'_>, rng: &mut Rng) -> Vec<f64> {
-        oracle.timed_start(rng).unwrap_or_else(|| Self::start(oracle.bounds(), rng))
-    }
-
     /// Starts of a run that follows no other optimiser.
     pub fn random_starts(&self) -> usize {
         self.starts.map_or(100, NonZeroUsize::get)
+    }
+
+    /// Draws a start: the problem's own, where it is timed.
+    pub(super) fn random_start(oracle: &Oracle<'_>, rng: &mut Rng) -> Vec<f64> {
+        let own = oracle.timed_start(rng);
+        own.unwrap_or_else(|| Self::start(oracle.bounds(), rng))
     }
 
     /// Draws a start uniformly from the box shrunk about its middle, by the square of a number drawn
