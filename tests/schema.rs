@@ -93,3 +93,32 @@ fn the_recipe_of_a_run_is_pinned() {
     );
     assert_eq!(plan.runs[0].recipe, recipe);
 }
+
+/// The subject's identity of the first run of an experiment on the paper's task.
+fn identity(trajectory: &str) -> serde_json::Value {
+    let text = format!("name = 'pinned'\nseeds = 1\n[trajectory]\n{trajectory}\n[[optimiser]]\npso = {{}}\n");
+    let document = Document::embedded("pinned.toml", &text);
+    let plan = Experiment::read(&document, &registry()).unwrap().plan().unwrap();
+    let recipe: serde_json::Value = serde_json::from_str(&plan.runs[0].recipe).unwrap();
+    recipe["subject"]["identity"].clone()
+}
+
+/// Results with sine polynomials from before there were other families are found by theirs.
+#[test]
+fn identities_of_families_are_pinned() {
+    let text = |value: &serde_json::Value| serde_json::to_string(value).unwrap();
+    let keys = |value: &serde_json::Value| -> Vec<String> {
+        value.as_object().unwrap().keys().cloned().collect()
+    };
+    let sine = identity("terms = 3");
+    assert_eq!(keys(&sine), ["task", "family", "accuracy", "box"]);
+    assert_eq!(text(&sine["family"]), r#"{"name":"sine-polynomial","terms":3}"#);
+    assert_eq!(text(&sine["accuracy"]), r#"{"attitude_steps":24,"peak_intervals":47}"#);
+    assert_eq!(keys(&sine["box"]), ["coefficient", "duration", "alpha"]);
+    assert_eq!(text(&sine["box"]["coefficient"]), "[1.0,0.35,0.15]");
+    let spline = identity("family = 'spline'\npieces = 20\nbox.duration = [2, 9]");
+    assert_eq!(keys(&spline), ["task", "family", "accuracy", "box"]);
+    assert_eq!(text(&spline["family"]), r#"{"name":"spline","pieces":20,"degree":4}"#);
+    assert_eq!(text(&spline["box"]), r#"{"duration":[2.0,9.0]}"#);
+    assert_eq!(text(&spline["task"]), text(&sine["task"]));
+}

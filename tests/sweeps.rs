@@ -11,7 +11,7 @@ use driftless::input::Document;
 use driftless::optimiser::{Ending, Scp};
 use driftless::registry;
 use driftless::reorientation::{
-    BestKnown, Formulated, Formulation, Reorientation, TaskFile, TaskSubject,
+    AnyReorientation, BestKnown, Formulated, Formulation, TaskFile, TaskSubject,
 };
 use driftless::search::{Oracle, Watch};
 
@@ -34,7 +34,7 @@ struct Best {
     coefficients: Vec<f64>,
 }
 
-fn task(instance: &Instance) -> &Reorientation {
+fn task(instance: &Instance) -> &dyn AnyReorientation {
     TaskSubject::of(instance).unwrap().reorientation()
 }
 

@@ -68,8 +68,7 @@ impl Check {
             }
             Kind::Task => {
                 let file = TaskFile::read(&document)?;
-                let (problem, _) = file.build(&document)?;
-                warn_of(&problem.task().robot);
+                warn_of(&file.problem(&document)?.task().robot);
                 print_resolved("task", &file)?;
             }
             Kind::Experiment => check_experiment(&document, !self.no_estimate)?,

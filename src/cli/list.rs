@@ -1,15 +1,21 @@
 //! `driftless list`.
 
+use std::sync::Arc;
+
 use clap::Args;
 use schemars::schema_for;
 
 use super::CliError;
 use crate::functions::TestFunction;
+use crate::input::Document;
 use crate::lanes::Width;
 use crate::optimiser::Settings;
-use crate::reorientation::{Boxes, Formulated, Formulation, TaskFile};
+use crate::reorientation::{
+    Boxes, FamilyName, Formulated, Formulation, SearchedFamily as _, TaskFile, TaskProblem,
+};
 use crate::robot::Robot;
 use crate::search::Problem as _;
+use crate::trajectory::Spline;
 
 /// Show optimisers, problems and robots with their settings
 #[derive(Debug, Args)]
@@ -49,7 +55,7 @@ impl List {
 fn problems() -> Result<(), CliError> {
     let document = TaskFile::paper();
     let (problem, boxes) = TaskFile::read(&document)?.build(&document)?;
-    let problem = std::sync::Arc::new(problem);
+    let problem = Arc::new(problem);
     say!("\nproblems: the reorientation task in these formulations");
     say!("(dimensions and boxes are those of the paper's task)");
     for formulation in Formulation::ALL {
@@ -57,6 +63,35 @@ fn problems() -> Result<(), CliError> {
             .map_err(|error| document.error_at(0..0, error, None))?;
         say!("\n  {}: {} variables", formulation.name(), formulated.bounds().len());
         say!("    {}", variables(formulation, &boxes));
+    }
+    splines()
+}
+
+/// The same over splines.
+fn splines() -> Result<(), CliError> {
+    let name = FamilyName::Spline.name();
+    let text = format!("[trajectory]\nfamily = \"{name}\"\n");
+    let document = Document::embedded("the paper's task", &text);
+    let TaskProblem::Spline(problem, boxes) = TaskFile::read(&document)?.problem(&document)? else {
+        return Ok(());
+    };
+    let (knots, problem) = (problem.family().knots().clone(), Arc::new(problem));
+    say!(
+        "\nand over splines, which files ask for by `[trajectory] family = \"{name}\"`, of {} pieces and degree {}",
+        knots.pieces(),
+        knots.degree()
+    );
+    let points = "control points in the joint's range and a tenth of its width beyond";
+    let [shortest, longest] = boxes.duration;
+    for &formulation in Spline::FORMULATIONS {
+        let formulated = Spline::formulated(formulation, problem.clone(), &boxes)
+            .map_err(|error| document.error_at(0..0, error, None))?;
+        let duration = match formulation {
+            Formulation::TimeFree => "; t_f is the shortest within the limits".to_owned(),
+            _ => format!(", {shortest:.3} s ≤ t_f ≤ {longest:.3} s"),
+        };
+        say!("\n  {}: {} variables", formulation.name(), formulated.bounds().len());
+        say!("    {points}{duration}");
     }
     Ok(())
 }

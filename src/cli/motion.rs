@@ -10,10 +10,9 @@ use super::CliError;
 use crate::output::check_writable;
 #[cfg(feature = "harness")]
 use crate::output::create_folder;
-use crate::reorientation::{Assessment, Motion, Reorientation};
+use crate::reorientation::{AnyReorientation, Assessment};
 use crate::reorientation::{INTERVALS, MotionFormat, write_motion};
 use crate::task::Task;
-use crate::trajectory::{Family, SinePolynomial};
 
 /// Where to write a motion.
 #[derive(Debug, Args)]
@@ -54,20 +53,19 @@ impl MotionFiles {
     }
 
     /// Writes what was asked for.
-    pub(super) fn write<F: Family>(
+    pub(super) fn write(
         &self,
-        problem: &Reorientation<F>,
+        problem: &dyn AnyReorientation,
         coefficients: &[f64],
         duration: f64,
     ) -> Result<(), CliError> {
         if let Some((path, format)) = self.format()? {
-            let motion = Motion::sample(problem, coefficients, duration, INTERVALS);
+            let motion = problem.sample(coefficients, duration, INTERVALS);
             write_motion(path, format, &motion)?;
         }
         #[cfg(feature = "harness")]
         if let Some(folder) = &self.figures {
-            let motion =
-                Motion::sample(problem, coefficients, duration, crate::reorientation::SAMPLES);
+            let motion = problem.sample(coefficients, duration, crate::reorientation::SAMPLES);
             crate::reorientation::write_motion_figures(folder, &motion, problem.task())?;
         }
         Ok(())
@@ -108,7 +106,7 @@ impl From<&Assessment> for AssessmentJson {
     }
 }
 
-/// The shape of a motion, as JSON: the paper's parameters only for its own family.
+/// The shape of a motion, as JSON: the paper's parameters only where it has them.
 #[derive(Debug, Serialize)]
 pub(super) struct ShapeJson {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -119,21 +117,13 @@ pub(super) struct ShapeJson {
 }
 
 impl ShapeJson {
-    /// Coefficients of any family, joint by joint.
-    pub(super) fn of<F: Family>(family: &F, coefficients: &[f64]) -> Self {
-        let own = |joint| coefficients[family.coefficients_of(joint)].to_vec();
-        let coefficients = (0..family.joints()).map(own).collect();
-        Self { alpha6: None, alpha7: None, coefficients }
-    }
-
-    pub(super) fn new(family: &SinePolynomial, coefficients: &[f64], duration: f64) -> Self {
-        let alpha = family.to_alpha(coefficients, duration);
-        let mut powers = alpha.chunks_exact(family.joints()).map(<[f64]>::to_vec);
-        let two = family.terms() == 2;
+    pub(super) fn new(problem: &dyn AnyReorientation, coefficients: &[f64], duration: f64) -> Self {
+        let powers = problem.powers(coefficients, duration);
+        let mut papers = powers.filter(|powers| powers.len() == 2).into_iter().flatten();
         Self {
-            alpha6: powers.next().filter(|_| two),
-            alpha7: powers.next().filter(|_| two),
-            ..Self::of(family, coefficients)
+            alpha6: papers.next(),
+            alpha7: papers.next(),
+            coefficients: problem.rows(coefficients),
         }
     }
 }

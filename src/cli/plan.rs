@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use clap::Args;
 use serde::Serialize;
+use toml::Spanned;
 
 use super::motion::{AssessmentJson, MotionFiles, ShapeJson, Told};
 use super::progress::Bar;
@@ -14,11 +15,12 @@ use super::{CliError, read_or, shown, warn_of, watch};
 use crate::input::{InputError, nearest};
 use crate::optimiser::{Scp, Settings};
 use crate::reorientation::{
-    Accuracy, Assessment, BestKnown, Formulated, Formulation, Reorientation, TaskFile,
+    Accuracy, Assessment, BestKnown, FamilyName, Formulated, Formulation, Reorientation,
+    SearchedFamily, TaskFile, TaskProblem, TrajectoryTable,
 };
 use crate::search::{BoundsError, Oracle, Rng, Stop};
 use crate::task::TaskTable;
-use crate::trajectory::{Family, SinePolynomial, Spline};
+use crate::trajectory::{Family, Spline};
 
 /// Find the best motion for one task
 #[derive(Debug, Args)]
@@ -29,13 +31,13 @@ pub(super) struct Plan {
     /// Optimiser, with its default settings; `driftless list` shows them
     #[arg(long, value_name = "NAME", default_value = "scp")]
     optimiser: String,
-    /// Family of motions: the file's sine polynomials, or splines, which are faster and reach more goals
-    #[arg(long, value_name = "NAME", default_value = "sine-polynomial")]
-    family: FamilyName,
-    /// Pieces of a spline; without it, 40
+    /// Family of motions, instead of the file's: splines are faster than sine polynomials and reach more goals
+    #[arg(long, value_name = "NAME")]
+    family: Option<FamilyName>,
+    /// Pieces of a spline, instead of the file's or 40
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(4..=1000))]
     pieces: Option<u16>,
-    /// Degree of a spline: 3 has a constant jerk on each piece, 4, which is the default, a continuous one, 5 a smooth one
+    /// Degree of a spline, instead of the file's or 4: 3 has a constant jerk on each piece, 4 a continuous one, 5 a smooth one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(3..=5))]
     degree: Option<u8>,
     /// Seed of the random numbers
@@ -53,19 +55,6 @@ pub(super) struct Plan {
     #[command(flatten)]
     files: MotionFiles,
 }
-
-/// The families that a motion may be of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum FamilyName {
-    /// The paper's.
-    SinePolynomial,
-    /// Splines over equal pieces.
-    Spline,
-}
-
-/// Pieces and degree of a spline, where they are not said.
-const PIECES: usize = 40;
-const DEGREE: usize = 4;
 
 /// Starts that `scp` follows over splines.
 const SPLINE_STARTS: usize = 4;
@@ -114,26 +103,26 @@ struct Found<F: Family> {
 impl Plan {
     pub(super) fn execute(self) -> Result<(), CliError> {
         self.files.check()?;
-        self.check_family()?;
         let settings = find_optimiser(&self.optimiser)?;
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;
-        let file = TaskFile::read(&document)?;
-        let (problem, boxes) = file.build(&document)?;
-        warn_of(&problem.task().robot);
+        let TaskFile { task, trajectory } = TaskFile::read(&document)?;
+        let file = TaskFile { trajectory: self.over(trajectory), task };
+        self.check_options(file.trajectory.family())?;
         let refused = |error| document.error_at(0..0, error, None);
-        if self.family == FamilyName::Spline {
-            return self.plan_spline(&settings, &problem, refused);
-        }
+        let (problem, boxes) = match file.problem(&document)? {
+            TaskProblem::Spline(problem, _) => {
+                return self.plan_spline(&settings, problem, file.task, refused);
+            }
+            TaskProblem::SinePolynomial(problem, boxes) => (problem, boxes),
+        };
+        warn_of(&problem.task().robot);
         // Default settings name no formulation.
         let formulation =
             Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree);
         let formulated =
             Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
         let found = self.search(&settings, formulated)?;
-        let reorientation = found.problem.task();
-        let (family, known) = (reorientation.family(), BestKnown::of(reorientation));
-        let shape = ShapeJson::new(family, &found.coefficients, found.assessment.duration);
-        self.report(&found, shape, known, |json| json.terms = Some(family.terms()))?;
+        self.report(&found)?;
         warn_of_residual(
             &found.assessment,
             "`--family spline`, more terms, another optimiser, such as a hybrid, a larger budget or a larger",
@@ -142,20 +131,29 @@ impl Plan {
         self.finish(&found)
     }
 
+    /// What a file says of the family, with what the command line says instead.
+    fn over(&self, mut table: TrajectoryTable) -> TrajectoryTable {
+        if let Some(family) = self.family {
+            table = table.with_family(family);
+        }
+        if let Some(pieces) = self.pieces {
+            table = table.with_pieces(Spanned::new(0..0, pieces.into()));
+        }
+        if let Some(degree) = self.degree {
+            table = table.with_degree(Spanned::new(0..0, degree.into()));
+        }
+        table
+    }
+
     /// Whether all options are for the family.
-    fn check_family(&self) -> Result<(), CliError> {
-        let is_spline = self.family == FamilyName::Spline;
-        let strange = [
-            ("--pieces", self.pieces.is_some() && !is_spline, "spline"),
-            ("--degree", self.degree.is_some() && !is_spline, "spline"),
-            ("--entry", self.entry && is_spline, "sine-polynomial"),
-        ];
-        match strange.into_iter().find(|(_, is_strange, _)| *is_strange) {
-            Some((option, _, family)) => Err(CliError::Usage {
-                message: format!("found {option}, which is for `--family {family}` alone"),
+    fn check_options(&self, family: FamilyName) -> Result<(), CliError> {
+        let options = [("--pieces", self.pieces.is_some()), ("--degree", self.degree.is_some())];
+        match options.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) if family != FamilyName::Spline => Err(CliError::Usage {
+                message: format!("found {option}, which is for `--family spline` alone"),
                 help: None,
             }),
-            None => Ok(()),
+            _ => Ok(()),
         }
     }
 
@@ -163,16 +161,11 @@ impl Plan {
     fn plan_spline(
         &self,
         settings: &Settings,
-        problem: &Reorientation,
+        problem: Reorientation<Spline>,
+        task: TaskTable,
         refused: impl Fn(BoundsError) -> InputError,
     ) -> Result<(), CliError> {
-        let (task, pieces, degree) = (
-            problem.task().clone(),
-            self.pieces.map_or(PIECES, usize::from),
-            self.degree.map_or(DEGREE, usize::from),
-        );
-        let family = Spline::new(&task.start.joints, &task.goal.joints, pieces, degree);
-        let problem = Reorientation::over(task, family, problem.accuracy());
+        warn_of(&problem.task().robot);
         let formulated = Formulated::free_form(Arc::new(problem)).map_err(refused)?;
         // Starts end alike more often than among sine polynomials, and each takes longer.
         let settings = match settings {
@@ -182,24 +175,17 @@ impl Plan {
             other => other.clone(),
         };
         let found = self.search(&settings, formulated)?;
-        let shape = ShapeJson::of(found.problem.task().family(), &found.coefficients);
-        self.report(&found, shape, None, |json| {
-            (json.pieces, json.degree) = (Some(pieces), Some(degree));
-        })?;
+        self.report(&found)?;
         warn_of_residual(&found.assessment, "another `--seed`, more `--pieces` or a larger");
+        self.say_entry(&found, task);
         self.finish(&found)
     }
 
     /// Says what was found, as JSON or to people.
-    fn report<F: Family>(
-        &self,
-        found: &Found<F>,
-        shape: ShapeJson,
-        known: Option<&BestKnown>,
-        describe: impl FnOnce(&mut PlanJson<'_>),
-    ) -> Result<(), CliError> {
+    fn report<F: SearchedFamily>(&self, found: &Found<F>) -> Result<(), CliError> {
+        let known = BestKnown::of(found.problem.task());
         if self.json {
-            say!("{}", self.json(found, shape, known, describe));
+            say!("{}", self.json(found, known));
             return Ok(());
         }
         let told = Told { task: found.problem.task().task(), assessment: &found.assessment };
@@ -218,7 +204,7 @@ impl Plan {
     }
 
     /// Writes the files that were asked for.
-    fn finish<F: Family>(&self, found: &Found<F>) -> Result<(), CliError> {
+    fn finish<F: SearchedFamily>(&self, found: &Found<F>) -> Result<(), CliError> {
         self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
         if found.interrupted {
             return Err(CliError::Interrupted("this is the best motion so far".to_owned()));
@@ -265,7 +251,7 @@ impl Plan {
     }
 
     /// Says how the motion stands in the file of the best known: where it should, or was asked to.
-    fn say_entry(&self, found: &Found<SinePolynomial>, task: TaskTable) {
+    fn say_entry<F: SearchedFamily>(&self, found: &Found<F>, task: TaskTable) {
         let (problem, cost) = (found.problem.task(), found.assessment.cost);
         let beaten = BestKnown::of(problem).filter(|known| known.is_beaten_by(cost));
         if let Some(known) = beaten {
@@ -284,36 +270,27 @@ impl Plan {
         }
     }
 
-    fn json<F: Family>(
-        &self,
-        found: &Found<F>,
-        shape: ShapeJson,
-        known: Option<&BestKnown>,
-        describe: impl FnOnce(&mut PlanJson<'_>),
-    ) -> String {
-        let family = match self.family {
-            FamilyName::SinePolynomial => "sine-polynomial",
-            FamilyName::Spline => "spline",
-        };
-        let mut json = PlanJson {
+    fn json<F: SearchedFamily>(&self, found: &Found<F>, known: Option<&BestKnown>) -> String {
+        let (problem, duration) = (found.problem.task(), found.assessment.duration);
+        let spec = problem.family().spec();
+        let json = PlanJson {
             task: shown(self.file.as_ref(), "xiao2023"),
             optimiser: &self.optimiser,
             seed: self.seed,
-            family,
-            terms: None,
-            pieces: None,
-            degree: None,
+            family: spec.name().name(),
+            terms: spec.terms(),
+            pieces: spec.pieces(),
+            degree: spec.degree(),
             best_known_j: known.map(|known| known.j),
             assessment: (&found.assessment).into(),
-            shape,
+            shape: ShapeJson::new(problem, &found.coefficients, duration),
             evaluations: found.evaluations,
             linearisations: found.linearisations,
             curvatures: found.curvatures,
             conic_solves: found.conic_solves,
-            lanes: found.problem.task().width().lanes(),
+            lanes: problem.width().lanes(),
             seconds: found.seconds,
         };
-        describe(&mut json);
         serde_json::to_string_pretty(&json).unwrap_or_default()
     }
 }

@@ -56,27 +56,27 @@ impl Replay {
             if let Some(claim) = published.cost {
                 say!("claimed: J {claim}, duration {} s", published.duration);
             }
-            for reading in Reading::ALL {
-                let assessment = published.assess(reading);
+            for (reading, assessment) in published.readings() {
                 say!("read {}:", reading.meaning());
                 say!("{}", Told { task: published.problem.task(), assessment: &assessment });
             }
         }
-        self.files.write(&published.problem, &published.coefficients, published.duration)
+        self.files.write(&*published.problem, &published.coefficients, published.duration)
     }
 }
 
 fn json(published: &Published) -> String {
     let Published { problem, coefficients, duration, cost } = published;
-    let readings = Reading::ALL
-        .map(|reading| ReadingJson { reading, assessment: (&published.assess(reading)).into() });
+    let readings = published.readings().into_iter();
+    let readings = readings
+        .map(|(reading, assessment)| ReadingJson { reading, assessment: (&assessment).into() });
     let json = ReplayJson {
         published: PublishedJson {
-            shape: ShapeJson::new(problem.family(), coefficients, *duration),
+            shape: ShapeJson::new(&**problem, coefficients, *duration),
             t_f: *duration,
             j: *cost,
         },
-        readings: readings.into(),
+        readings: readings.collect(),
     };
     serde_json::to_string_pretty(&json).unwrap_or_default()
 }

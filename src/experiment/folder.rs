@@ -11,7 +11,7 @@ use super::runner::{Progress, RunError, run};
 use super::shard::Shard;
 use super::store::{Store, StoreError};
 use crate::input::{Document, InputError};
-use crate::output::{FileError, check_writable, write_file};
+use crate::output::{FileError, check_writable, create_folder, write_file};
 use crate::search::Watch;
 
 /// What the experiment is kept in.
@@ -186,6 +186,9 @@ fn check_name(folder: &Path, name: &str) -> Result<(), FolderError> {
 /// Writes a text, unless it is there already: then other shards may be reading it. Whether another
 /// text gave way to it.
 fn keep(path: &Path, text: &str) -> Result<bool, FolderError> {
+    if let Some(folder) = path.parent() {
+        create_folder(folder)?;
+    }
     let before = std::fs::read_to_string(path).ok();
     if before.as_deref() == Some(text) {
         check_writable(path)?;

@@ -188,6 +188,8 @@ fn check_entry(entry: &Entry, all: &[Instance], document: &Document) -> Result<(
         if let Some(asked) = entrant.formulation.as_ref().filter(|asked| !spaces.contains(asked)) {
             return error(if spaces.is_empty() {
                 format!("found the formulation `{asked}`, which `{name}` does not have")
+            } else if let Err(reason) = instance.subject.problem(asked) {
+                format!("found the formulation `{asked}`: {reason}")
             } else {
                 let spaces = spaces.join(", ");
                 format!("found the formulation `{asked}`, expected one of `{name}`: {spaces}")

@@ -25,6 +25,8 @@ pub(super) struct ProblemTable {
     group: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     title: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    series: Option<String>,
     dimension: usize,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     least_cost: Option<Finite>,
@@ -64,7 +66,8 @@ fn letter() -> String {
 impl ProblemTable {
     /// What of an instance its results need to be read.
     pub(super) fn of(instance: &Instance) -> Self {
-        let Instance { label, group, title, subject, targets, budget, coordinates } = instance;
+        let Instance { label, group, title, series, subject, targets, budget, coordinates } =
+            instance;
         let finite = |values: &[f64]| {
             values.iter().copied().filter(|value| value.is_finite()).map(Finite).collect()
         };
@@ -75,6 +78,7 @@ impl ProblemTable {
             label: label.clone(),
             group: (group != label).then(|| group.clone()),
             title: (title != group).then(|| title.clone()),
+            series: (series != label).then(|| series.clone()),
             dimension: subject.dimension(),
             least_cost: subject.least_cost().filter(|cost| cost.is_finite()).map(Finite),
             known_cost: subject.known_cost().filter(|cost| cost.is_finite()).map(Finite),
@@ -98,11 +102,13 @@ impl ProblemTable {
         })?;
         let group = self.group.clone().unwrap_or_else(|| self.label.clone());
         let title = self.title.clone().unwrap_or_else(|| group.clone());
+        let series = self.series.clone().unwrap_or_else(|| self.label.clone());
         let targets: Vec<f64> = self.targets.iter().map(|target| target.0).collect();
         let subject = Arc::new(Stored { identity, table: self.clone() });
         Ok(Instance {
             group,
             title,
+            series,
             targets,
             budget: self.budget.map(|budget| budget.evaluations),
             coordinates: self.coordinates.clone(),

@@ -146,6 +146,8 @@ pub struct Instance {
     pub group: String,
     /// The group as charts write it.
     pub title: String,
+    /// What it shares with groups that differ from its own in the number of variables alone, as charts write it.
+    pub series: String,
     /// The settings that a sweep has given it.
     pub coordinates: Vec<Coordinate>,
     /// What is minimised.
@@ -181,6 +183,7 @@ impl Instance {
         Self {
             group: label.clone(),
             title: label.clone(),
+            series: label.clone(),
             label,
             coordinates: Vec::new(),
             subject,

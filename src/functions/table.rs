@@ -64,6 +64,7 @@ fn instance(function: TestFunction, dimension: usize, number: u64) -> Instance {
     let problem = Arc::new(Analytic::new(function, dimension, number));
     let mut instance = Instance::new(label, Arc::new(Function { problem, dimension, number }));
     instance.title.clone_from(&group);
+    function.name().clone_into(&mut instance.series);
     instance.group = group;
     instance.with_targets(TARGETS)
 }

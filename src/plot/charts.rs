@@ -3,15 +3,16 @@
 use polars::prelude::DataFrame;
 
 use super::looks::Looks;
-use super::{comparison, convergence, critical_difference, running_times};
+use super::{comparison, convergence, critical_difference, dimensions, running_times};
 use crate::analysis::ALPHA;
 use crate::exhibit::{Chart, Table};
 use crate::experiment::Plan;
 use crate::figure::{Figure, FigureError};
 
 /// The names that every experiment's charts may have.
-pub(crate) const NAMES: [&str; 8] = [
+pub(crate) const NAMES: [&str; 9] = [
     "convergence",
+    "dimensions",
     "running-time-distribution",
     "expected-running-time",
     "performance-profiles",
@@ -84,6 +85,14 @@ impl Maker<'_> {
                  ended early keeps the best it had. Costs below 10⁻⁹ stand at the lower end."
             );
             self.add("convergence", "Convergence", &caption, "convergence", figure);
+        }
+        if let Some(frame) = self.frame("dimensions") {
+            let figure = dimensions::dimensions(frame, &self.looks, symbol)?;
+            let caption = format!(
+                "Median of the final {symbol} over the runs, certified, against the number of variables. Medians that are \
+                 infinite are left out."
+            );
+            self.add("dimensions", "Number of variables", &caption, "dimensions", figure);
         }
         // One optimiser on many instances is what sweeps are about.
         let is_field = self.plan.optimisers.len() > 1 || self.plan.instances.len() == 1;

@@ -5,6 +5,7 @@ mod comparison;
 mod convergence;
 mod critical_difference;
 mod curves;
+mod dimensions;
 mod looks;
 mod running_times;
 #[cfg(test)]

@@ -1,16 +1,18 @@
 //! The best motions known, from `results/best-known.toml`.
 //!
-//! A task and a number of terms are told by a fingerprint of all that the least cost follows from, so
-//! that neither names nor the way in which a file is written matter.
+//! A task and a family are told by a fingerprint of all that the least cost follows from, so that neither names nor the
+//! way in which a file is written matter.
 
 use std::fmt;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::accuracy::Accuracy;
-use super::fitness::{Assessment, Reorientation};
+use super::any::AnyReorientation;
+use super::family::{FamilyName, FamilySpec};
+use super::fitness::Assessment;
 use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::task::{Task, TaskTable};
@@ -25,10 +27,20 @@ const ZERO: f64 = 1e-12;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BestKnown {
-    /// [`fingerprint`] of the task and the number of terms.
+    /// [`fingerprint`] of the task and the family.
     pub fingerprint: String,
-    /// Free coefficients per joint.
-    pub terms: usize,
+    /// The motion's family; the paper's where nothing is said.
+    #[serde(default = "papers")]
+    pub family: FamilyName,
+    /// Free coefficients per joint of a sine polynomial.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub terms: Option<usize>,
+    /// Pieces of a spline.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pieces: Option<usize>,
+    /// Degree of a spline.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub degree: Option<usize>,
     /// The cost `J`, evaluated finely, to ten significant digits.
     pub j: f64,
     /// Duration \[s\].
@@ -36,7 +48,7 @@ pub struct BestKnown {
     /// The least cost found over motions of any shape, where somebody looked for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free_form_j: Option<f64>,
-    /// Bump coefficients, one row per joint.
+    /// Coefficients of bumps, or what control points add to the straight path \[rad\]; one row per joint.
     pub coefficients: Vec<Vec<f64>>,
     /// The command that found it.
     pub found_by: String,
@@ -53,6 +65,10 @@ struct BestKnownFile {
     motion: Vec<BestKnown>,
 }
 
+fn papers() -> FamilyName {
+    FamilyName::SinePolynomial
+}
+
 fn document() -> Document {
     Document::embedded("best-known.toml", include_str!("../../results/best-known.toml"))
 }
@@ -67,27 +83,30 @@ impl BestKnown {
     }
 
     /// What is known of a task over its family.
-    pub fn of(problem: &Reorientation) -> Option<&'static Self> {
+    pub fn of(problem: &dyn AnyReorientation) -> Option<&'static Self> {
         let fingerprint = fingerprint(problem);
         Self::all().iter().find(|entry| entry.fingerprint == fingerprint)
     }
 
     /// A motion as an entry.
     pub fn new(
-        problem: &Reorientation,
+        problem: &dyn AnyReorientation,
         task: TaskTable,
         coefficients: &[f64],
         assessment: &Assessment,
         found_by: String,
     ) -> Self {
-        let terms = problem.family().terms();
+        let spec = problem.spec();
         Self {
             fingerprint: fingerprint(problem),
-            terms,
+            family: spec.name(),
+            terms: spec.terms(),
+            pieces: spec.pieces(),
+            degree: spec.degree(),
             j: significant::<10>(assessment.cost),
             t_f: assessment.duration,
             free_form_j: None,
-            coefficients: coefficients.chunks_exact(terms).map(<[f64]>::to_vec).collect(),
+            coefficients: problem.rows(coefficients),
             found_by,
             date: chrono::Utc::now().date_naive().to_string(),
             task,
@@ -121,10 +140,17 @@ impl BestKnown {
     }
 
     /// The entry's motion over its task, evaluated finely.
-    pub fn replay(&self) -> Result<(Reorientation, Assessment), InputError> {
-        let task = self.task.build(&document())?;
-        let problem = Reorientation::new(task.into(), self.terms, Accuracy::FINE);
-        let assessment = problem.assess(&self.coefficients.concat(), Some(self.t_f));
+    pub fn replay(&self) -> Result<(Arc<dyn AnyReorientation>, Assessment), InputError> {
+        let document = document();
+        let error = |message: &str| document.error_at(0..0, message, None);
+        let spec = FamilySpec::of(self.family, self.terms, self.pieces, self.degree)
+            .ok_or_else(|| error("found an entry without the size of its family"))?;
+        let problem = spec.over(self.task.build(&document)?.into(), Accuracy::FINE);
+        let coefficients = self.coefficients.concat();
+        if coefficients.len() != problem.dimension() {
+            return Err(error("found an entry with other coefficients than its family's"));
+        }
+        let assessment = problem.assess(&coefficients, Some(self.t_f));
         Ok((problem, assessment))
     }
 }
@@ -139,10 +165,11 @@ impl fmt::Display for BestKnown {
 
 /// What the least cost of a task over a family follows from: the first 16 hexadecimal digits of the SHA-256 of a JSON text with sorted
 /// keys, numbers rounded to nine significant digits, of the robot's joints and bodies at zero positions,
-/// the joints' positions at both ends, the turn of the base from start to goal, the limits, `K_b` and the number of terms.
+/// the joints' positions at both ends, the turn of the base from start to goal, the limits, `K_b` and the number of terms;
+/// of a spline its pieces and degree instead of that.
 ///
 /// Boxes and accuracies are those of a search, not of the task.
-pub fn fingerprint(problem: &Reorientation) -> String {
+pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
     let Task { robot, start, goal, limits, base_weight } = &**problem.task();
     let turn = start.base.inverse() * goal.base;
     let components = [turn.w, turn.i, turn.j, turn.k];
@@ -150,15 +177,22 @@ pub fn fingerprint(problem: &Reorientation) -> String {
     // Of the two quaternions for one turn, the one whose first component, the real part before the
     // others, is positive.
     let sign = if first.is_some_and(|first| first < 0.0) { -1.0 } else { 1.0 };
-    let determinants = json!({
+    let mut determinants = json!({
         "robot": robot.identity(),
         "start": start.joints,
         "goal": goal.joints,
         "turn": components.map(|component| sign * component),
         "limits": limits.0,
         "base_weight": base_weight,
-        "terms": problem.family().terms(),
     });
+    let spec = problem.spec();
+    for (name, size) in
+        [("terms", spec.terms()), ("pieces", spec.pieces()), ("degree", spec.degree())]
+    {
+        if let Some(size) = size {
+            determinants[name] = size.into();
+        }
+    }
     digest(&canonical(determinants).to_string())
 }
 
@@ -198,7 +232,7 @@ mod tests {
         let (problem, assessment) = entry.replay().unwrap();
         let coefficients = entry.coefficients.concat();
         let text =
-            BestKnown::new(&problem, entry.task.clone(), &coefficients, &assessment, "x".into())
+            BestKnown::new(&*problem, entry.task.clone(), &coefficients, &assessment, "x".into())
                 .to_string();
         let file: BestKnownFile = Document::embedded("entry", &text).parse().unwrap();
         let [again] = &file.motion[..] else { panic!("expected one motion") };

@@ -10,6 +10,7 @@ use super::accuracy::Accuracy;
 use super::fitness::{Assessment, Reorientation};
 use super::measure::Workspace;
 use super::settings::Boxes;
+use super::spline_box::SplineBox;
 use crate::search::{
     Bounds, BoundsError, Coarse, Composite, Differentiable, Evaluation, Failure, Linearisation,
     Multipliers, Points, Problem, Slopes, Subgradient, Timed,
@@ -108,6 +109,16 @@ impl Formulated<Spline> {
         let coarser = task.coarser().map(|task| Self::free_form(Arc::new(task))).transpose()?;
         let (formulation, coarser) = (Formulation::TimeFree, coarser.map(Arc::new));
         Ok(Self { formulation, task, bounds, powers: None, coarser })
+    }
+
+    /// The same with the duration as the last variable, in its box.
+    pub fn free_form_scaled(
+        task: Arc<Reorientation<Spline>>,
+        boxes: &SplineBox,
+    ) -> Result<Self, BoundsError> {
+        let free = Self::free_form(task)?;
+        let bounds = Bounds::new(free.bounds.iter().chain([boxes.duration]).collect())?;
+        Ok(Self { formulation: Formulation::Scaled, bounds, ..free })
     }
 }
 

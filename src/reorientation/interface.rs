@@ -8,12 +8,13 @@ use serde_json::json;
 use super::best_known::BestKnown;
 use super::exhibits;
 use super::fitness::Assessment;
-use super::subject::{DURATION, KIND, RESIDUAL, SAME_MOTION, SPACES, TaskSubject};
+use super::subject::{DURATION, KIND, RESIDUAL, SAME_MOTION, TaskSubject};
 use crate::exhibit::Exhibits;
 use crate::experiment::{
     Identity, Instance, Judgement, Quantity, Results, Subject, Value, ValueKind,
 };
 use crate::search::{Failure, Problem};
+use crate::task::Task;
 
 impl Subject for TaskSubject {
     fn kind(&self) -> &'static str {
@@ -25,42 +26,41 @@ impl Subject for TaskSubject {
     }
 
     fn identity(&self) -> Identity {
-        let (accuracy, boxes) = (self.problem.accuracy(), &self.boxes);
+        let problem = self.reorientation();
+        let accuracy = problem.accuracy();
         Identity::of(json!({
-            "task": self.problem.task().identity(),
-            "family": { "name": "sine-polynomial", "terms": self.problem.family().terms() },
+            "task": problem.task().identity(),
+            "family": problem.spec().identity(),
             "accuracy": {
                 "attitude_steps": accuracy.attitude_steps,
                 "peak_intervals": accuracy.peak_intervals,
             },
-            "box": {
-                "coefficient": boxes.coefficient,
-                "duration": boxes.duration,
-                "alpha": boxes.alpha,
-            },
+            "box": self.box_identity(),
         }))
     }
 
     fn spaces(&self) -> Vec<String> {
-        SPACES.map(str::to_owned).to_vec()
+        self.formulations().iter().map(|formulation| formulation.name().to_owned()).collect()
     }
 
     fn problem(&self, space: &str) -> Result<Arc<dyn Problem>, Failure> {
-        Ok(Arc::new(self.formulated(space)?))
+        Ok(self.formulated(space)?)
     }
 
-    /// Of the paper's variables, free coefficients and duration.
+    /// Free coefficients and duration, the paper's variables.
     fn dimension(&self) -> usize {
-        self.problem.family().dimension() + 1
+        self.reorientation().dimension() + 1
     }
 
     fn known_cost(&self) -> Option<f64> {
-        BestKnown::of(&self.problem).map(|known| known.j)
+        BestKnown::of(self.reorientation()).map(|known| known.j)
     }
 
     fn facts(&self) -> Vec<(Quantity, Value)> {
-        let task = self.problem.task();
+        let problem = self.reorientation();
+        let (task, family) = (problem.task(), problem.spec());
         let limit = |order: usize| Value::from(task.uniform_limit_deg(order));
+        let count = |value: Option<usize>| value.map_or(Value::None, Value::from);
         let shown = |name: &str, kind, meaning| Quantity::new(name, kind, meaning).shown(name);
         let lanes = "how many places of a path the processor evaluated at once; 4 and 8 give the same bits, 1 may give \
             others in the last digits";
@@ -81,13 +81,27 @@ impl Subject for TaskSubject {
             (shown("acceleration_limit_deg_s2", ValueKind::Real, "the same [°/s²]"), limit(1)),
             (shown("jerk_limit_deg_s3", ValueKind::Real, "the same [°/s³]"), limit(2)),
             (
-                shown("terms", ValueKind::Count, "free coefficients per joint"),
-                (self.problem.family().terms() as u64).into(),
+                shown(
+                    "family",
+                    ValueKind::Text,
+                    "the family of motions, `sine-polynomial` or `spline`",
+                ),
+                family.name().name().into(),
             ),
+            (
+                shown(
+                    "terms",
+                    ValueKind::Count,
+                    "free coefficients per joint of a sine polynomial",
+                ),
+                count(family.terms()),
+            ),
+            (shown("pieces", ValueKind::Count, "pieces of a spline"), count(family.pieces())),
+            (shown("degree", ValueKind::Count, "degree of a spline"), count(family.degree())),
             (
                 Quantity::new("lanes", ValueKind::Count, lanes)
                     .telling_provenance("Places of a path evaluated at once"),
-                (self.problem.width().lanes() as u64).into(),
+                problem.width().lanes().into(),
             ),
         ]
     }
@@ -100,7 +114,7 @@ impl Subject for TaskSubject {
             Quantity::new(
                 "coefficients",
                 ValueKind::Reals,
-                "the motion's bump coefficients, joint by joint",
+                "the motion's free coefficients, joint by joint: of bumps, or what control points add to the straight path",
             ),
         ]
     }
@@ -123,13 +137,20 @@ impl Subject for TaskSubject {
     }
 
     fn dependence(&self, instances: &[&Instance]) -> Option<&'static str> {
-        instances.windows(2).any(|pair| pair[0].group != pair[1].group).then_some(
+        let tasks: Vec<&Task> = instances
+            .iter()
+            .filter_map(|instance| Some(&**Self::of(instance)?.reorientation().task()))
+            .collect();
+        let is_same =
+            |a: &Task, b: &Task| (&a.start, &a.goal) == (&b.start, &b.goal) && a.robot == b.robot;
+        let mut pairs = tasks.iter().enumerate();
+        pairs.any(|(i, a)| tasks[..i].iter().any(|b| is_same(a, b))).then_some(
             "Settings of one task are not independent tasks, so p-values are smaller than they should be.",
         )
     }
 
     fn warning(&self) -> Option<String> {
-        self.problem.task().robot.warning()
+        self.reorientation().task().robot.warning()
     }
 
     fn exhibits(&self, results: &Results<'_>) -> Exhibits {

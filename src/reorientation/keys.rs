@@ -5,27 +5,44 @@ use std::num::NonZeroU64;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use super::family::FamilyName;
 use super::poses::RandomPoses;
-use super::settings::TrajectoryTable;
-use crate::input::{Fraction, Positive, count, non_empty};
+use super::settings::{DEFAULTS, TrajectoryTable};
+use crate::input::{Document, Fraction, InputError, Positive, count, non_empty};
 use crate::task::{PoseTable, TaskTable};
 
 /// A file's keys that are the task's.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 pub(super) struct TaskKeys {
     /// The task that the sweep varies.
     pub(super) task: TaskTable,
     /// The family to search and how.
     pub(super) trajectory: TrajectoryTable,
     /// What is varied.
-    #[serde(default, skip_serializing_if = "Sweep::is_empty")]
+    #[serde(default)]
     pub(super) sweep: Sweep,
+}
+
+/// The same as a file has them; the task is left out where those of files take its place.
+#[derive(Serialize)]
+pub(super) struct WrittenKeys<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) task: Option<&'a TaskTable>,
+    pub(super) trajectory: &'a TrajectoryTable,
+    #[serde(skip_serializing_if = "Sweep::is_empty")]
+    pub(super) sweep: &'a Sweep,
 }
 
 /// The `[sweep]` table: the instances are the cross product of its lists.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub(super) struct Sweep {
+    /// Robots that do the task: names or files.
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) robot: Vec<Spanned<String>>,
+    /// Files of tasks that take the task's place.
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) task: Vec<Spanned<String>>,
     /// `K_b`.
     #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub(super) weight_base: Vec<Fraction>,
@@ -38,9 +55,18 @@ pub(super) struct Sweep {
     /// The same limit for all joints \[°/s³\].
     #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub(super) jerk_limit_deg_s3: Vec<Positive>,
-    /// Free coefficients per joint.
+    /// Families of motions.
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) family: Vec<FamilyName>,
+    /// Free coefficients per joint of sine polynomials.
     #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub(super) terms: Vec<Spanned<usize>>,
+    /// Pieces of splines.
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) pieces: Vec<Spanned<usize>>,
+    /// Degrees of splines.
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) degree: Vec<Spanned<usize>>,
     /// Evaluations per run, instead of the budget's.
     #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub(super) budget: Vec<Evaluations>,
@@ -58,7 +84,61 @@ pub(super) struct Evaluations(
     #[serde(deserialize_with = "count::<1_000_000_000_000, _, _>")] pub(super) NonZeroU64,
 );
 
+/// A list of sizes, which is for the instances of one family alone.
+pub(super) struct Sizes<'a> {
+    pub(super) name: &'static str,
+    pub(super) family: FamilyName,
+    pub(super) values: &'a [Spanned<usize>],
+    pub(super) set: fn(TrajectoryTable, Spanned<usize>) -> TrajectoryTable,
+}
+
+impl TaskKeys {
+    /// The keys of an experiment file; what they leave out is the paper's.
+    pub(super) fn read(keys: &[&str], document: &Document) -> Result<Self, InputError> {
+        let Self { task, trajectory, sweep } = document.parse_keys(keys, &[DEFAULTS])?;
+        if let (false, Some(place)) = (sweep.task.is_empty(), document.key("task")?) {
+            let message = "found a `[task]` beside the tasks of the sweep, expected one of them";
+            return Err(document.error_at(place, message, None));
+        }
+        let own = [trajectory.family()];
+        let families = if sweep.family.is_empty() { &own[..] } else { &sweep.family };
+        for Sizes { name, family, values, .. } in sweep.sizes() {
+            if let Some(first) = values.first().filter(|_| !families.contains(&family)) {
+                return Err(family.alone(name, first.span(), document));
+            }
+        }
+        let trajectory = trajectory.swept_over(families);
+        trajectory.check_keys(document)?;
+        Ok(Self { task, trajectory, sweep })
+    }
+}
+
 impl Sweep {
+    /// The lists of sizes.
+    pub(super) fn sizes(&self) -> [Sizes<'_>; 3] {
+        use FamilyName::{SinePolynomial, Spline};
+        [
+            Sizes {
+                name: "terms",
+                family: SinePolynomial,
+                values: &self.terms,
+                set: TrajectoryTable::with_terms,
+            },
+            Sizes {
+                name: "pieces",
+                family: Spline,
+                values: &self.pieces,
+                set: TrajectoryTable::with_pieces,
+            },
+            Sizes {
+                name: "degree",
+                family: Spline,
+                values: &self.degree,
+                set: TrajectoryTable::with_degree,
+            },
+        ]
+    }
+
     fn is_empty(&self) -> bool {
         *self == Self::default()
     }

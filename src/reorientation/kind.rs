@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use super::keys::{Sweep, TaskKeys};
-use super::settings::DEFAULTS;
+use super::bases;
+use super::keys::{Sweep, TaskKeys, WrittenKeys};
 use super::subject::{KIND, SPACES};
 use super::sweep;
 use crate::experiment::{Instance, Kind, Source};
 use crate::input::{Document, InputError};
-use crate::robot::RobotFile;
 
 /// The reorientation task. What an experiment file leaves out is the paper's.
 #[derive(Debug, Clone, Copy, Default)]
@@ -28,8 +27,7 @@ impl Kind for ReorientationTask {
     }
 
     fn read(&self, document: &Document) -> Result<Arc<dyn Source>, InputError> {
-        let keys: TaskKeys = document.parse_keys(self.keys(), &[DEFAULTS])?;
-        Ok(Arc::new(keys))
+        Ok(Arc::new(TaskKeys::read(self.keys(), document)?))
     }
 }
 
@@ -39,7 +37,9 @@ impl Source for TaskKeys {
     }
 
     fn written(&self) -> Result<String, String> {
-        toml::to_string(self).map_err(|error| error.to_string())
+        let task = self.sweep.task.is_empty().then_some(&self.task);
+        let written = WrittenKeys { task, trajectory: &self.trajectory, sweep: &self.sweep };
+        toml::to_string(&written).map_err(|error| error.to_string())
     }
 
     fn sets_budgets(&self) -> bool {
@@ -55,13 +55,7 @@ impl Source for TaskKeys {
         &self,
         document: &Document,
     ) -> Result<Option<(Arc<dyn Source>, Vec<(String, String)>)>, InputError> {
-        const ROBOT: &str = "robot.toml";
-        let Some(path) = self.task.robot_file(document) else { return Ok(None) };
-        let robot = RobotFile::read(&Document::read(&path)?)?;
-        let text = toml::to_string(&robot).map_err(|error| {
-            document.error_at(0..0, format!("cannot keep the robot: {error}"), None)
-        })?;
-        let keys = Self { task: self.task.clone().with_robot(ROBOT), ..self.clone() };
-        Ok(Some((Arc::new(keys), vec![(ROBOT.to_owned(), text)])))
+        let (keys, files) = bases::kept(self, document)?;
+        Ok((!files.is_empty()).then(|| (Arc::new(keys) as Arc<dyn Source>, files)))
     }
 }

@@ -1,11 +1,15 @@
 //! The reorientation task: a problem to search in several formulations, and a subject of experiments.
 
 mod accuracy;
+mod any;
+#[cfg(feature = "harness")]
+mod bases;
 mod best_known;
 mod derivatives;
 #[cfg(feature = "harness")]
 mod exhibits;
 mod export;
+mod family;
 mod fitness;
 mod formulation;
 #[cfg(feature = "harness")]
@@ -20,6 +24,7 @@ mod motion;
 mod poses;
 mod published;
 mod settings;
+mod spline_box;
 #[cfg(feature = "harness")]
 mod subject;
 #[cfg(feature = "harness")]
@@ -30,12 +35,14 @@ mod terms;
 mod timed;
 
 pub use accuracy::Accuracy;
+pub use any::{AnyReorientation, SearchedFamily};
 pub use best_known::{BestKnown, fingerprint};
 #[cfg(all(feature = "cli", feature = "harness"))]
 pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]
 pub use export::write_motions;
 pub use export::{ExportError, INTERVALS, MotionFormat, write_motion};
+pub use family::{FamilyName, FamilySpec};
 pub use fitness::{Assessment, Reorientation};
 pub use formulation::{Formulated, Formulation};
 #[cfg(feature = "harness")]
@@ -43,6 +50,7 @@ pub use kind::ReorientationTask;
 pub use measure::Workspace;
 pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};
-pub use settings::{Boxes, TaskFile, TrajectoryTable};
+pub use settings::{Boxes, TaskFile, TaskProblem, TrajectoryTable};
+pub use spline_box::SplineBox;
 #[cfg(feature = "harness")]
 pub use subject::TaskSubject;

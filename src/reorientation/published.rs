@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::accuracy::Accuracy;
+use super::any::AnyReorientation;
+use super::family::FamilyName;
 use super::fitness::{Assessment, Reorientation, attitude_error};
 use super::settings::{DEFAULTS, TrajectoryTable, check_terms};
 use crate::input::{Document, Finite, InputError, Positive};
@@ -68,9 +70,9 @@ struct MotionTable {
 /// A motion to replay and what was claimed of it.
 #[derive(Debug, Clone)]
 pub struct Published {
-    /// The task it is for, over a family with as many terms as the motion has.
-    pub problem: Reorientation,
-    /// Bump coefficients, joint by joint.
+    /// The task it is for, over a family of the motion's size.
+    pub problem: Arc<dyn AnyReorientation>,
+    /// Coefficients, joint by joint.
     pub coefficients: Vec<f64>,
     /// Duration \[s\].
     pub duration: f64,
@@ -94,7 +96,11 @@ const RUNGE_KUTTA_STEPS: usize = 2000;
 impl ReplayFile {
     /// Reads a file; the task it leaves out is the paper's.
     pub fn read(document: &Document) -> Result<Self, InputError> {
-        document.parse_over(&[DEFAULTS])
+        let Self { task, trajectory, motion } = document.parse_over(&[DEFAULTS])?;
+        trajectory.check_keys(document)?;
+        let rows = motion.get_ref().coefficients.as_ref().map(Spanned::get_ref);
+        let free = rows.and_then(|rows| rows.first()).map_or(0, Vec::len);
+        Ok(Self { trajectory: trajectory.for_free(free), task, motion })
     }
 
     /// The motion published in the paper.
@@ -112,22 +118,40 @@ impl ReplayFile {
             return Err(document.error_at(motion.t_f.span(), message, None));
         }
         let shape = self.shape(task.robot.joint_count(), document)?;
-        let terms = match &shape {
-            Shape::Alpha(_) => 2,
-            Shape::Coefficients(rows) => rows[0].len(),
-        };
-        check_terms(terms, self.motion.span(), document)?;
-        let problem = Reorientation::new(task, terms, Accuracy::FINE);
-        let coefficients = match shape {
-            Shape::Alpha(alpha) => problem.family().from_alpha(&alpha, duration),
-            Shape::Coefficients(rows) => rows.iter().flatten().map(|c| c.0).collect(),
+        let (problem, coefficients) = match self.trajectory.family() {
+            FamilyName::SinePolynomial => {
+                let terms = shape.free();
+                check_terms(terms, self.motion.span(), document)?;
+                let problem = Reorientation::new(task, terms, Accuracy::FINE);
+                let coefficients = match shape {
+                    Shape::Alpha(alpha) => problem.family().from_alpha(&alpha, duration),
+                    Shape::Coefficients(rows) => rows.concat(),
+                };
+                (Arc::new(problem) as Arc<dyn AnyReorientation>, coefficients)
+            }
+            FamilyName::Spline => {
+                let Shape::Coefficients(rows) = &shape else {
+                    let message = "found `alpha6`, expected `coefficients` of a spline";
+                    return Err(document.error_at(self.motion.span(), message, None));
+                };
+                let family = self.trajectory.spline(&task, document)?;
+                let (found, expected) = (shape.free(), family.free());
+                if found != expected {
+                    let message = format!(
+                        "found rows of {found} coefficients, expected {expected}: pieces + degree − 6"
+                    );
+                    return Err(document.error_at(self.motion.span(), message, None));
+                }
+                let problem = Reorientation::over(task, family, Accuracy::FINE);
+                (Arc::new(problem) as Arc<dyn AnyReorientation>, rows.concat())
+            }
         };
         let cost = motion.j.map(|claim| claim.0);
         Ok(Published { problem, coefficients, duration, cost })
     }
 
     /// The shape as given, with as many values as the robot has joints.
-    fn shape(&self, joints: usize, document: &Document) -> Result<Shape<'_>, InputError> {
+    fn shape(&self, joints: usize, document: &Document) -> Result<Shape, InputError> {
         let motion = self.motion.get_ref();
         let error = |span, message: String| Err(document.error_at(span, message, None));
         match (&motion.alpha6, &motion.alpha7, &motion.coefficients) {
@@ -152,7 +176,8 @@ impl ReplayFile {
                     );
                     return error(list.span(), message);
                 }
-                Ok(Shape::Coefficients(rows))
+                let row = |row: &Vec<Finite>| row.iter().map(|c| c.0).collect();
+                Ok(Shape::Coefficients(rows.iter().map(row).collect()))
             }
             _ => error(
                 self.motion.span(),
@@ -163,37 +188,55 @@ impl ReplayFile {
 }
 
 /// The two ways to write a shape down.
-enum Shape<'a> {
+enum Shape {
     /// `α_6` of all joints, then `α_7`.
     Alpha(Vec<f64>),
-    /// One row per joint.
-    Coefficients(&'a [Vec<Finite>]),
+    /// One row per joint, all of the same length.
+    Coefficients(Vec<Vec<f64>>),
+}
+
+impl Shape {
+    /// Free coefficients per joint.
+    fn free(&self) -> usize {
+        match self {
+            Self::Alpha(_) => 2,
+            Self::Coefficients(rows) => rows[0].len(),
+        }
+    }
 }
 
 impl Published {
-    /// The motion under a reading.
-    pub fn assess(&self, reading: Reading) -> Assessment {
+    /// The motion under every reading that it has.
+    pub fn readings(&self) -> Vec<(Reading, Assessment)> {
+        let read = |reading| Some((reading, self.assess(reading)?));
+        Reading::ALL.into_iter().filter_map(read).collect()
+    }
+
+    /// The motion under a reading; none where the paper has nothing of the motion's family.
+    pub fn assess(&self, reading: Reading) -> Option<Assessment> {
         match reading {
-            Reading::Physics => self.problem.assess(&self.coefficients, Some(self.duration)),
+            Reading::Physics => Some(self.problem.assess(&self.coefficients, Some(self.duration))),
             Reading::AsPublished => self.assess_as_published(),
         }
     }
 
-    fn assess_as_published(&self) -> Assessment {
+    fn assess_as_published(&self) -> Option<Assessment> {
         let task = self.problem.task();
-        let path = self.problem.family().path(&self.coefficients);
+        let problem =
+            Reorientation::new(task.clone(), self.problem.spec().terms()?, Accuracy::FINE);
+        let path = problem.family().path(&self.coefficients);
         let end = transposed_attitude(task, &path, roll_first(&task.start));
         let peaks = sampled_peaks(&path, self.duration);
         let excess = peaks.excess(&task.limits);
         let attitude_error = attitude_error(&roll_first(&task.goal), &end);
-        Assessment {
-            cost: self.problem.terms().cost(attitude_error, self.duration, &excess, 0.0),
+        Some(Assessment {
+            cost: problem.terms().cost(attitude_error, self.duration, &excess, 0.0),
             attitude_error,
             duration: self.duration,
             excess,
             range_excess: 0.0,
             peaks,
-        }
+        })
     }
 }
 

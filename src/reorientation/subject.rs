@@ -1,13 +1,15 @@
 //! The reorientation task as a subject of experiments.
 
+use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::fitness::Reorientation;
+use super::any::{AnyReorientation, SearchedFamily};
+use super::fitness::{Assessment, Reorientation};
 use super::formulation::{Formulated, Formulation};
-use super::settings::Boxes;
+use super::settings::TaskProblem;
 use crate::experiment::Instance;
 use crate::lanes::Width;
-use crate::search::{Failure, Problem as _};
+use crate::search::{Failure, Problem};
 
 /// The name of the kind.
 pub(super) const KIND: &str = "reorientation";
@@ -23,17 +25,16 @@ pub(super) const SAME_MOTION: f64 = 1e-6;
 pub(super) const RESIDUAL: &str = "residual_deg";
 pub(super) const DURATION: &str = "t_f";
 
-/// The task within its boxes.
+/// The task within a box of its family.
 #[derive(Debug)]
 pub struct TaskSubject {
-    pub(super) problem: Arc<Reorientation>,
-    pub(super) boxes: Boxes,
+    within: Arc<dyn Searched>,
 }
 
 impl TaskSubject {
     /// The task over its family, to be searched in these boxes.
-    pub fn new(problem: Arc<Reorientation>, boxes: Boxes) -> Self {
-        Self { problem, boxes }
+    pub fn new<F: SearchedFamily>(problem: Arc<Reorientation<F>>, boxes: F::Boxes) -> Self {
+        Self { within: Arc::new(Within { problem, boxes }) }
     }
 
     /// The subject of an instance, where it is a task.
@@ -42,26 +43,99 @@ impl TaskSubject {
     }
 
     /// The task over its family.
-    pub fn reorientation(&self) -> &Reorientation {
-        &self.problem
+    pub fn reorientation(&self) -> &dyn AnyReorientation {
+        self.within.problem()
     }
 
     /// The same, evaluated with so many lanes; see [`Reorientation::with_width`].
     #[must_use]
     pub fn with_width(&self, width: Width) -> Self {
-        Self { problem: Arc::new(self.problem.with_width(width)), boxes: self.boxes.clone() }
+        Self { within: self.within.with_width(width) }
     }
 
-    pub(super) fn formulated(&self, space: &str) -> Result<Formulated, Failure> {
+    pub(super) fn formulated(&self, space: &str) -> Result<Arc<dyn Searchable>, Failure> {
         let formulation = Formulation::named(Some(space))
             .ok_or_else(|| Failure::new(format!("the task has no formulation `{space}`")))?;
-        Formulated::new(formulation, self.problem.clone(), &self.boxes)
-            .map_err(|error| Failure::new(error.to_string()))
+        self.within.formulated(formulation)
     }
 
     /// The coefficients of a point.
     pub fn coefficients(&self, space: &str, x: &[f64]) -> Option<Vec<f64>> {
         let formulated = self.formulated(space).ok()?;
-        (x.len() == formulated.bounds().len()).then(|| formulated.decode(x).0)
+        (x.len() == formulated.bounds().len()).then(|| formulated.coefficients(x))
+    }
+
+    pub(super) fn formulations(&self) -> &'static [Formulation] {
+        self.within.formulations()
+    }
+
+    pub(super) fn box_identity(&self) -> serde_json::Value {
+        self.within.box_identity()
+    }
+}
+
+impl From<TaskProblem> for TaskSubject {
+    fn from(problem: TaskProblem) -> Self {
+        match problem {
+            TaskProblem::SinePolynomial(problem, boxes) => Self::new(Arc::new(problem), boxes),
+            TaskProblem::Spline(problem, boxes) => Self::new(Arc::new(problem), boxes),
+        }
+    }
+}
+
+/// The task in one of its formulations, over whichever family.
+pub(super) trait Searchable: Problem {
+    /// The coefficients of a point.
+    fn coefficients(&self, x: &[f64]) -> Vec<f64>;
+
+    /// The motion of a point, evaluated finely: its coefficients and what is known of it.
+    fn certify(&self, x: &[f64]) -> (Vec<f64>, Assessment);
+}
+
+impl<F: SearchedFamily> Searchable for Formulated<F> {
+    fn coefficients(&self, x: &[f64]) -> Vec<f64> {
+        self.decode(x).0
+    }
+
+    fn certify(&self, x: &[f64]) -> (Vec<f64>, Assessment) {
+        self.certify(x)
+    }
+}
+
+/// The task within a box, over whichever family.
+trait Searched: Debug + Send + Sync {
+    fn problem(&self) -> &dyn AnyReorientation;
+    fn with_width(&self, width: Width) -> Arc<dyn Searched>;
+    fn formulations(&self) -> &'static [Formulation];
+    fn formulated(&self, formulation: Formulation) -> Result<Arc<dyn Searchable>, Failure>;
+    fn box_identity(&self) -> serde_json::Value;
+}
+
+#[derive(Debug)]
+struct Within<F: SearchedFamily> {
+    problem: Arc<Reorientation<F>>,
+    boxes: F::Boxes,
+}
+
+impl<F: SearchedFamily> Searched for Within<F> {
+    fn problem(&self) -> &dyn AnyReorientation {
+        &*self.problem
+    }
+
+    fn with_width(&self, width: Width) -> Arc<dyn Searched> {
+        let problem = Arc::new(self.problem.with_width(width));
+        Arc::new(Self { problem, boxes: self.boxes.clone() })
+    }
+
+    fn formulations(&self) -> &'static [Formulation] {
+        F::FORMULATIONS
+    }
+
+    fn formulated(&self, formulation: Formulation) -> Result<Arc<dyn Searchable>, Failure> {
+        Ok(Arc::new(F::formulated(formulation, self.problem.clone(), &self.boxes)?))
+    }
+
+    fn box_identity(&self) -> serde_json::Value {
+        F::box_identity(&self.boxes)
     }
 }

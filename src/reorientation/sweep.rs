@@ -3,8 +3,7 @@
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
-use toml::Spanned;
-
+use super::bases::{Base, bases};
 use super::best_known::BestKnown;
 use super::keys::{Evaluations, Sweep, TaskKeys};
 use super::settings::TrajectoryTable;
@@ -17,35 +16,53 @@ use crate::task::{PoseTable, Task, TaskTable};
 /// Targets where the file states none: by which shares they exceed the best known cost.
 const GAPS: [f64; 3] = [0.1, 0.01, 0.001];
 
+/// Settings that change the number of variables and keep what the problem is like.
+const SIZES: [&str; 2] = ["terms", "pieces"];
+
 /// A task on its way through the lists, with what they have set so far.
 #[derive(Clone)]
 struct Draft {
     label: String,
     title: String,
+    series: String,
     coordinates: Vec<Coordinate>,
     task: Task,
-    terms: Spanned<usize>,
+    trajectory: TrajectoryTable,
     budget: Option<NonZeroU64>,
 }
 
 /// The cross product of the sweep's lists; instances that differ in the pose alone are one group.
-pub(super) fn instances(
-    TaskKeys { task, trajectory, sweep }: &TaskKeys,
+pub(super) fn instances(keys: &TaskKeys, document: &Document) -> Result<Vec<Instance>, InputError> {
+    let mut instances = Vec::new();
+    for base in bases(keys, document)? {
+        instances.extend(instances_of(&base, keys, document)?);
+    }
+    Ok(instances)
+}
+
+fn instances_of(
+    base: &Base<'_>,
+    TaskKeys { trajectory, sweep, .. }: &TaskKeys,
     document: &Document,
 ) -> Result<Vec<Instance>, InputError> {
-    let poses = poses(task, sweep, document)?;
-    let posed: Vec<Task> =
-        poses.iter().map(|pose| task.with_pose(pose).build(document)).collect::<Result<_, _>>()?;
+    let (task, own) = (&base.task, &base.document);
+    let poses = poses(task, sweep, own, document)?;
+    let posed = |pose: &PoseTable| task.with_pose(pose).build(own);
+    let posed: Vec<Task> = poses.iter().map(posed).collect::<Result<_, _>>()?;
     // The task's own start and goal need not fit the robot where poses replace them.
-    let task = posed.first().map_or_else(|| task.build(document), |task| Ok(task.clone()))?;
-    let first = Draft {
+    let task = posed.first().map_or_else(|| task.build(own), |task| Ok(task.clone()))?;
+    let mut first = Draft {
         label: String::new(),
         title: String::new(),
+        series: String::new(),
         coordinates: Vec::new(),
         task,
-        terms: trajectory.terms().clone(),
+        trajectory: trajectory.clone(),
         budget: None,
     };
+    if let Some((setting, name)) = &base.setting {
+        first = first.with(setting, name.as_str().into());
+    }
     let mut instances = Vec::new();
     for group in drafts(first, sweep) {
         let numbered: Vec<(usize, &Task)> = (1..).zip(&posed).collect();
@@ -58,7 +75,8 @@ pub(super) fn instances(
             instances.push(Instance {
                 group: group.label.clone(),
                 title: group.title.clone(),
-                ..draft.build(trajectory, document)?
+                series: group.series.clone(),
+                ..draft.build(document)?
             });
         }
     }
@@ -69,11 +87,12 @@ pub(super) fn instances(
 fn poses(
     task: &TaskTable,
     sweep: &Sweep,
+    own: &Document,
     document: &Document,
 ) -> Result<Vec<PoseTable>, InputError> {
     match &sweep.random_poses {
         None => Ok(sweep.pose.clone()),
-        Some(random) if sweep.pose.is_empty() => Ok(random.get_ref().draw(&task.robot(document)?)),
+        Some(random) if sweep.pose.is_empty() => Ok(random.get_ref().draw(&task.robot(own)?)),
         Some(random) => {
             let message = "found both `pose` and `random_poses`, expected one of them";
             Err(document.error_at(random.span(), message, None))
@@ -96,10 +115,22 @@ fn drafts(first: Draft, sweep: &Sweep) -> Vec<Draft> {
     drafts = cross(drafts, "rate_limit_deg_s", &sweep.rate_limit_deg_s, limit(0));
     drafts = cross(drafts, "acceleration_limit_deg_s2", &sweep.acceleration_limit_deg_s2, limit(1));
     drafts = cross(drafts, "jerk_limit_deg_s3", &sweep.jerk_limit_deg_s3, limit(2));
-    drafts = cross(drafts, "terms", &sweep.terms, |draft, terms| {
-        draft.terms = terms.clone();
-        Value::Count(*terms.get_ref() as u64)
+    drafts = cross(drafts, "family", &sweep.family, |draft, family| {
+        draft.trajectory = draft.trajectory.clone().with_family(*family);
+        family.name().into()
     });
+    for key in &sweep.sizes() {
+        let cross = |draft: Draft| {
+            if draft.trajectory.family() != key.family {
+                return vec![draft];
+            }
+            cross(vec![draft], key.name, key.values, |draft, value| {
+                draft.trajectory = (key.set)(draft.trajectory.clone(), value.clone());
+                (*value.get_ref()).into()
+            })
+        };
+        drafts = drafts.into_iter().flat_map(cross).collect();
+    }
     cross(drafts, "budget", &sweep.budget, |draft, Evaluations(evaluations)| {
         draft.budget = Some(*evaluations);
         Value::Count(evaluations.get())
@@ -119,22 +150,27 @@ fn cross<T>(
     let with = |draft: &Draft, value: &T| {
         let mut draft = draft.clone();
         let value = set(&mut draft, value);
-        let shown = match &value {
-            Value::Real(number) => number.to_string(),
-            Value::Count(count) => count.to_string(),
-            _ => String::new(),
-        };
-        for (text, part) in
-            [(&mut draft.label, format!("{name}={shown}")), (&mut draft.title, title(name, &shown))]
-        {
-            let space = if text.is_empty() { "" } else { " " };
-            *text += space;
-            *text += &part;
-        }
-        draft.coordinates.push(Coordinate { setting: name.to_owned(), value });
-        draft
+        draft.with(name, value)
     };
     drafts.iter().flat_map(|draft| values.iter().map(|value| with(draft, value))).collect()
+}
+
+/// Adds a part to a label.
+fn append(text: &mut String, part: &str) {
+    if !text.is_empty() {
+        text.push(' ');
+    }
+    text.push_str(part);
+}
+
+/// A value as labels have it.
+pub(super) fn shown(value: &Value) -> String {
+    match value {
+        Value::Real(number) => number.to_string(),
+        Value::Count(count) => count.to_string(),
+        Value::Text(text) => text.clone(),
+        _ => String::new(),
+    }
 }
 
 /// A setting with its symbol and unit, as charts write it.
@@ -144,23 +180,31 @@ pub(super) fn title(setting: &str, value: &str) -> String {
         "rate_limit_deg_s" => format!("rate ≤ {value} °/s"),
         "acceleration_limit_deg_s2" => format!("acceleration ≤ {value} °/s²"),
         "jerk_limit_deg_s3" => format!("jerk ≤ {value} °/s³"),
-        "terms" => format!("terms = {value}"),
+        "terms" | "pieces" | "degree" => format!("{setting} = {value}"),
+        "family" | "robot" | "task" => value.to_owned(),
         _ => format!("{setting}={value}"),
     }
 }
 
 impl Draft {
-    fn build(
-        self,
-        trajectory: &TrajectoryTable,
-        document: &Document,
-    ) -> Result<Instance, InputError> {
-        let table = trajectory.with_terms(self.terms);
-        let (problem, boxes) = table.build(Arc::new(self.task), document)?;
-        let known = BestKnown::of(&problem);
+    /// With one more setting in its label and its title.
+    fn with(mut self, name: &str, value: Value) -> Self {
+        let shown = shown(&value);
+        let title = title(name, &shown);
+        append(&mut self.label, &format!("{name}={shown}"));
+        append(&mut self.title, &title);
+        if !SIZES.contains(&name) {
+            append(&mut self.series, &title);
+        }
+        self.coordinates.push(Coordinate { setting: name.to_owned(), value });
+        self
+    }
+
+    fn build(self, document: &Document) -> Result<Instance, InputError> {
+        let subject: TaskSubject = self.trajectory.build(Arc::new(self.task), document)?.into();
+        let known = BestKnown::of(subject.reorientation());
         let targets = known.into_iter().flat_map(|known| GAPS.map(|gap| known.target(gap)));
         let targets: Vec<f64> = targets.collect();
-        let subject = TaskSubject::new(Arc::new(problem), boxes);
         let mut instance = Instance::new(self.label, Arc::new(subject)).with_targets(targets);
         instance.coordinates = self.coordinates;
         instance.budget = self.budget;

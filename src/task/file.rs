@@ -68,10 +68,10 @@ impl TaskTable {
         find_robot(&self.robot, document)
     }
 
-    /// The same task with its robot in another place.
+    /// The same task with another robot.
     #[must_use]
-    pub fn with_robot(self, robot: &str) -> Self {
-        Self { robot: Spanned::new(self.robot.span(), robot.to_owned()), ..self }
+    pub fn with_robot(self, robot: Spanned<String>) -> Self {
+        Self { robot, ..self }
     }
 
     /// The task. A robot that does not come with the program is a file, sought beside `document`.

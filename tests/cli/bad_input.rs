@@ -47,6 +47,22 @@ fn tasks() {
         ("box_without_widths", "[trajectory.box]\ncoefficient = []\n"),
         ("box_alpha_too_few", "[trajectory.box]\nalpha = [1e-4]\n"),
         ("task_is_no_table", "task = 3\n"),
+        ("unknown_family", "[trajectory]\nfamily = 'spine'\n"),
+        ("terms_of_a_spline", "[trajectory]\nfamily = 'spline'\nterms = 3\n"),
+        (
+            "coefficient_of_a_spline",
+            "[trajectory]\nfamily = 'spline'\n[trajectory.box]\ncoefficient = [1]\n",
+        ),
+        (
+            "alpha_of_a_spline",
+            "[trajectory]\nfamily = 'spline'\n[trajectory.box]\nalpha = [1, 2]\n",
+        ),
+        ("pieces_without_spline", "[trajectory]\nfamily = 'sine-polynomial'\npieces = 20\n"),
+        ("degree_without_spline", "[trajectory]\nfamily = 'sine-polynomial'\ndegree = 3\n"),
+        ("too_few_pieces", "[trajectory]\nfamily = 'spline'\npieces = 3\n"),
+        ("too_many_pieces", "[trajectory]\nfamily = 'spline'\npieces = 1001\n"),
+        ("degree_too_low", "[trajectory]\nfamily = 'spline'\ndegree = 2\n"),
+        ("degree_no_number", "[trajectory]\nfamily = 'spline'\ndegree = 'cubic'\n"),
     ] {
         rejects(&format!("task_{name}"), &["plan", "task.toml"], "task.toml", text);
     }
@@ -189,6 +205,26 @@ fn sweeps() {
         ("poses_without_turn", instances("random_poses = { turn_deg = 0 }")),
         ("poses_none", instances("random_poses = { count = 0 }")),
         ("no_budget", instances("budget = [1000, 0]")),
+        ("pieces_without_spline", instances("pieces = [10, 20]")),
+        ("terms_without_sine", instances("family = ['spline']\nterms = [2]")),
+        ("pieces_too_few", instances("family = ['spline']\npieces = [10, 2]")),
+        ("families_none", instances("family = []")),
+        (
+            "key_of_no_family",
+            instances("family = ['sine-polynomial']").replace("[sweep]", "[trajectory]\ndegree = 3\n[sweep]"),
+        ),
+        (
+            "spline_in_powers_of_time",
+            field("[trajectory]\nfamily = 'spline'\n[[optimiser]]\npso = { formulation = 'raw' }"),
+        ),
+        ("robot_unknown", instances("robot = ['xiao2023', 'nowhere.toml']")),
+        ("task_unknown", instances("task = ['nowhere.toml']")),
+        ("task_without_task", instances("task = ['experiment.toml']")),
+        ("robots_and_tasks", instances("task = ['a.toml']\nrobot = ['xiao2023']")),
+        (
+            "tasks_of_two_kinds",
+            instances("task = ['a.toml']").replace("[sweep]", "[task.weights]\nbase = 0.5\n[sweep]"),
+        ),
         ("setting_unknown", swept("{ poplation = [50, 100] }")),
         ("setting_out_of_range", swept("{ population = [50, 0] }")),
         ("setting_of_wrong_type", swept("{ formulation = ['raw', 3] }")),
@@ -265,6 +301,17 @@ fn motions() {
         ("no_time", format!("[motion]\nt_f = 0\nalpha6 = {six}\nalpha7 = {six}\n")),
         ("too_long", format!("[motion]\nt_f = 1e10\nalpha6 = {six}\nalpha7 = {six}\n")),
         ("missing", "[task.weights]\nbase = 0.5\n".to_owned()),
+        (
+            "spline_in_powers",
+            format!("[trajectory]\nfamily = 'spline'\n[motion]\nt_f = 6\nalpha6 = {six}\nalpha7 = {six}\n"),
+        ),
+        (
+            "spline_of_another_size",
+            format!(
+                "[trajectory]\nfamily = 'spline'\npieces = 10\n[motion]\nt_f = 6\ncoefficients = [{0}, {0}, {0}, {0}, {0}, {0}]\n",
+                "[1, 2]"
+            ),
+        ),
     ] {
         rejects(&format!("motion_{name}"), &["replay", "motion.toml"], "motion.toml", text);
     }

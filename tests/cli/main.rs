@@ -9,6 +9,8 @@ mod folder;
 #[cfg(feature = "harness")]
 mod shards;
 #[cfg(feature = "harness")]
+mod splines;
+#[cfg(feature = "harness")]
 mod survival;
 #[cfg(feature = "harness")]
 mod sweeps;

@@ -2,6 +2,7 @@
 
 mod best;
 mod convergence;
+mod dimensions;
 mod distribution;
 mod expected_running_time;
 mod feasibility;
@@ -20,7 +21,7 @@ use super::summary::summary;
 use crate::exhibit::Table;
 
 /// The names that every experiment's tables may have.
-pub const NAMES: [&str; 16] = [
+pub const NAMES: [&str; 17] = [
     "summary",
     "best",
     "targets",
@@ -31,6 +32,7 @@ pub const NAMES: [&str; 16] = [
     "ranks",
     "pairs",
     "blocks",
+    "dimensions",
     "runs",
     "convergence",
     "expected-running-time",
@@ -57,6 +59,7 @@ impl Analysis<'_> {
             tables.push(pairs::table(self, blocks)?);
             tables.push(ranks::blocks_table(self, blocks)?);
         }
+        tables.extend(dimensions::table(self)?);
         tables.push(runs::table(self)?);
         tables.push(convergence::table(self)?);
         tables.push(expected_running_time::table(self)?);

@@ -1,7 +1,7 @@
 //! The best motion of every instance that is a task.
 
 use crate::experiment::{Instance, Results, Run};
-use crate::reorientation::fitness::Reorientation;
+use crate::reorientation::any::AnyReorientation;
 use crate::reorientation::motion::Motion;
 use crate::reorientation::subject::{DURATION, RESIDUAL, TaskSubject};
 
@@ -12,7 +12,7 @@ pub(in crate::reorientation) struct BestMotion<'a> {
     pub(in crate::reorientation) instance: &'a Instance,
     /// The optimiser's label.
     pub(in crate::reorientation) optimiser: &'a str,
-    pub(in crate::reorientation) problem: &'a Reorientation,
+    pub(in crate::reorientation) problem: &'a dyn AnyReorientation,
     pub(in crate::reorientation) coefficients: Vec<f64>,
     /// Error of the base \[°\].
     pub(in crate::reorientation) residual_deg: f64,
@@ -23,7 +23,7 @@ pub(in crate::reorientation) struct BestMotion<'a> {
 impl BestMotion<'_> {
     /// Sampled at so many intervals.
     pub(in crate::reorientation) fn sample(&self, intervals: usize) -> Motion {
-        Motion::sample(self.problem, &self.coefficients, self.duration, intervals)
+        self.problem.sample(&self.coefficients, self.duration, intervals)
     }
 }
 

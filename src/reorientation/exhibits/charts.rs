@@ -7,8 +7,15 @@ use crate::exhibit::Chart;
 use crate::reorientation::best_known::BestKnown;
 
 /// The names that the charts may have.
-pub(super) const NAMES: [&str; 6] =
-    ["weight-sweep", "rate-sweep", "acceleration-sweep", "jerk-sweep", "terms-sweep", "pareto"];
+pub(super) const NAMES: [&str; 7] = [
+    "weight-sweep",
+    "rate-sweep",
+    "acceleration-sweep",
+    "jerk-sweep",
+    "terms-sweep",
+    "pieces-sweep",
+    "pareto",
+];
 
 /// A chart for each setting that varies, and one of what the weight trades.
 pub(super) fn charts(best: &[BestMotion<'_>]) -> Vec<Chart> {
@@ -61,6 +68,11 @@ fn told(swept: Swept) -> (&'static str, &'static str, &'static str) {
             "Number of terms",
             "Cost of the best motion against the number of free coefficients per joint. The dashed line, where there is one, \
              is the least cost found for motions of any shape, of piecewise constant jerk.",
+        ),
+        Swept::Pieces => (
+            "pieces-sweep",
+            "Number of pieces",
+            "Cost of the best motion against the number of pieces of a spline.",
         ),
     }
 }

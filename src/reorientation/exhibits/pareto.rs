@@ -93,14 +93,14 @@ pub(super) fn trades(best: &[BestMotion<'_>]) -> Vec<Trade> {
     best.iter().map(trade).collect()
 }
 
-/// An experiment has one robot, so there is no need to compare robots.
 fn same_but_for_weight(a: &BestMotion<'_>, b: &BestMotion<'_>) -> bool {
     let (own, other) = (a.problem.task(), b.problem.task());
     own.base_weight != other.base_weight
         && own.start == other.start
         && own.goal == other.goal
         && own.limits == other.limits
-        && a.problem.family().terms() == b.problem.family().terms()
+        && a.problem.spec() == b.problem.spec()
+        && own.robot == other.robot
 }
 
 fn dominates(a: &BestMotion<'_>, b: &BestMotion<'_>) -> bool {

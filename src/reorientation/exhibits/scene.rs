@@ -6,9 +6,9 @@ use serde::Serialize;
 use super::best::BestMotion;
 use crate::exhibit::Scene;
 use crate::posture::{Posture, Satellite};
-use crate::reorientation::fitness::Reorientation;
 use crate::reorientation::motion::Motion;
 use crate::robot::{MovingJoint, Robot};
+use crate::task::Task;
 
 /// Most instances whose best motion is shown.
 const MOST_SCENES: usize = 24;
@@ -64,7 +64,7 @@ impl<'a> MotionScene<'a> {
             duration: best.duration,
             satellite: Satellite::of(&task.robot),
             frames: frames(&task.robot, &motion),
-            joints: joints(best.problem, &motion),
+            joints: joints(task, &motion),
             goal: Posture::of(&task.robot, &task.goal.joints, task.goal.base),
         }
     }
@@ -84,8 +84,7 @@ fn frames(robot: &Robot, motion: &Motion) -> Vec<Posture> {
     motion.base.iter().enumerate().map(frame).collect()
 }
 
-fn joints(problem: &Reorientation, motion: &Motion) -> Vec<JointScene> {
-    let task = problem.task();
+fn joints(task: &Task, motion: &Motion) -> Vec<JointScene> {
     let joint = |(i, joint): (usize, MovingJoint<'_>)| JointScene {
         name: joint.name.to_owned(),
         range: joint.range.map(f64::to_degrees),

@@ -1,13 +1,13 @@
 //! What the best motion is worth over a swept setting.
 
 use super::best::BestMotion;
-use crate::experiment::{Instance, Value};
+use crate::experiment::Instance;
 use crate::figure::Figure;
 use crate::figure::axis::Axis;
 use crate::figure::marks::{Line, Mark};
 use crate::figure::panel::{MARGIN, Panel, extent, range};
 use crate::figure::style::{Marker, Stroke};
-use crate::reorientation::sweep::title;
+use crate::reorientation::sweep::{shown, title};
 use crate::reorientation::symbols::{K_B, T_F};
 
 /// A setting that can be swept.
@@ -23,6 +23,8 @@ pub(super) enum Swept {
     JerkLimit,
     /// Free coefficients per joint.
     Terms,
+    /// Pieces of a spline.
+    Pieces,
 }
 
 /// Most curves of a chart.
@@ -30,8 +32,14 @@ pub(super) const MOST_CURVES: usize = 8;
 
 impl Swept {
     /// All of them.
-    pub(super) const ALL: [Self; 5] =
-        [Self::WeightBase, Self::RateLimit, Self::AccelerationLimit, Self::JerkLimit, Self::Terms];
+    pub(super) const ALL: [Self; 6] = [
+        Self::WeightBase,
+        Self::RateLimit,
+        Self::AccelerationLimit,
+        Self::JerkLimit,
+        Self::Terms,
+        Self::Pieces,
+    ];
 
     /// Its key in a file.
     pub(super) fn name(self) -> &'static str {
@@ -41,6 +49,7 @@ impl Swept {
             Self::AccelerationLimit => "acceleration_limit_deg_s2",
             Self::JerkLimit => "jerk_limit_deg_s3",
             Self::Terms => "terms",
+            Self::Pieces => "pieces",
         }
     }
 
@@ -51,6 +60,7 @@ impl Swept {
             Self::AccelerationLimit => "limit on accelerations [°/s²]".to_owned(),
             Self::JerkLimit => "limit on jerks [°/s³]".to_owned(),
             Self::Terms => "free coefficients per joint".to_owned(),
+            Self::Pieces => "pieces".to_owned(),
         }
     }
 }
@@ -85,10 +95,7 @@ pub(super) fn points(best: &[BestMotion<'_>], swept: Swept) -> Vec<Point> {
 /// The settings of an instance but for one, as charts write them.
 pub(super) fn others(instance: &Instance, setting: &str) -> String {
     let others = instance.coordinates.iter().filter(|c| c.setting != setting);
-    let titles = others.map(|c| match &c.value {
-        Value::Count(count) => title(&c.setting, &count.to_string()),
-        value => title(&c.setting, &value.real().unwrap_or(f64::NAN).to_string()),
-    });
+    let titles = others.map(|c| title(&c.setting, &shown(&c.value)));
     titles.collect::<Vec<_>>().join(" ")
 }
 
@@ -145,9 +152,7 @@ pub(super) fn sweep(points: &[Point], swept: Swept, bound: Option<f64>) -> Optio
     let is_positive = sweep.curves.iter().flatten().all(|values| values[0] > 0.0);
     let x = match swept {
         Swept::Terms => Axis::linear(&swept.label(), sweep.settings(), MARGIN).whole(),
-        _ if swept == Swept::Terms || !is_positive => {
-            Axis::linear(&swept.label(), sweep.settings(), MARGIN)
-        }
+        _ if !is_positive => Axis::linear(&swept.label(), sweep.settings(), MARGIN),
         _ => Axis::logarithmic(&swept.label(), sweep.settings(), MARGIN),
     };
     let panel = |mut lines: Vec<Line>, reference: Option<Line>, label: &str, is_log: bool| {
@@ -173,6 +178,7 @@ pub(super) fn sweep(points: &[Point], swept: Swept, bound: Option<f64>) -> Optio
             let bound = bound.filter(|_| sweep.curves.len() == 1).map(level);
             Figure::column(vec![panel(sweep.lines(1), bound, "best J", false)], 44.0)
         }
+        Swept::Pieces => Figure::column(vec![panel(sweep.lines(1), None, "best J", false)], 44.0),
         Swept::JerkLimit => {
             let law = cube_root_law(&sweep);
             Figure::column(vec![panel(sweep.lines(3), law, &duration(), true)], 44.0)

@@ -1,0 +1,197 @@
+//! The task over whichever family: what files of motions and experiments ask of it.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use super::accuracy::Accuracy;
+use super::family::FamilySpec;
+use super::fitness::{Assessment, Reorientation};
+use super::formulation::{Formulated, Formulation};
+use super::motion::Motion;
+use super::settings::Boxes;
+use super::spline_box::SplineBox;
+use crate::lanes::Width;
+use crate::search::Failure;
+use crate::task::Task;
+use crate::trajectory::{Family, SinePolynomial, Spline};
+
+/// A family that files name, with the variables and the box that it is searched in.
+pub trait SearchedFamily: Family {
+    /// Where it is searched.
+    type Boxes: Debug + Clone + Send + Sync;
+
+    /// Its formulations, the preferred one first.
+    const FORMULATIONS: &[Formulation];
+
+    /// Its name and size.
+    fn spec(&self) -> FamilySpec;
+
+    /// The task over it in one of its formulations.
+    fn formulated(
+        formulation: Formulation,
+        task: Arc<Reorientation<Self>>,
+        boxes: &Self::Boxes,
+    ) -> Result<Formulated<Self>, Failure>;
+
+    /// What keys of runs are made of.
+    #[cfg(feature = "harness")]
+    fn box_identity(boxes: &Self::Boxes) -> serde_json::Value;
+
+    /// The paper's `α_6`, `α_7`, … \[s⁻⁶, s⁻⁷, …\] of a motion, one row per power, where the family has them.
+    fn powers(&self, _coefficients: &[f64], _duration: f64) -> Option<Vec<Vec<f64>>> {
+        None
+    }
+}
+
+impl SearchedFamily for SinePolynomial {
+    type Boxes = Boxes;
+
+    const FORMULATIONS: &[Formulation] =
+        &[Formulation::TimeFree, Formulation::Scaled, Formulation::Raw];
+
+    fn spec(&self) -> FamilySpec {
+        FamilySpec::SinePolynomial { terms: self.terms() }
+    }
+
+    fn formulated(
+        formulation: Formulation,
+        task: Arc<Reorientation>,
+        boxes: &Boxes,
+    ) -> Result<Formulated, Failure> {
+        Formulated::new(formulation, task, boxes).map_err(|error| Failure::new(error.to_string()))
+    }
+
+    #[cfg(feature = "harness")]
+    fn box_identity(boxes: &Boxes) -> serde_json::Value {
+        serde_json::json!({
+            "coefficient": boxes.coefficient,
+            "duration": boxes.duration,
+            "alpha": boxes.alpha,
+        })
+    }
+
+    fn powers(&self, coefficients: &[f64], duration: f64) -> Option<Vec<Vec<f64>>> {
+        let alpha = self.to_alpha(coefficients, duration);
+        Some(alpha.chunks_exact(self.joints()).map(<[f64]>::to_vec).collect())
+    }
+}
+
+impl SearchedFamily for Spline {
+    type Boxes = SplineBox;
+
+    const FORMULATIONS: &[Formulation] = &[Formulation::TimeFree, Formulation::Scaled];
+
+    fn spec(&self) -> FamilySpec {
+        FamilySpec::Spline { pieces: self.knots().pieces(), degree: self.knots().degree() }
+    }
+
+    fn formulated(
+        formulation: Formulation,
+        task: Arc<Reorientation<Self>>,
+        boxes: &SplineBox,
+    ) -> Result<Formulated<Self>, Failure> {
+        let formulated = match formulation {
+            Formulation::TimeFree => Formulated::free_form(task),
+            Formulation::Scaled => Formulated::free_form_scaled(task, boxes),
+            Formulation::Raw => {
+                let reason = "`raw` is of the paper's powers of time, which splines do not have; expected `time-free` or \
+                              `scaled`";
+                return Err(Failure::new(reason));
+            }
+        };
+        formulated.map_err(|error| Failure::new(error.to_string()))
+    }
+
+    #[cfg(feature = "harness")]
+    fn box_identity(boxes: &SplineBox) -> serde_json::Value {
+        serde_json::json!({ "duration": boxes.duration })
+    }
+}
+
+impl FamilySpec {
+    /// The task over the family.
+    ///
+    /// # Panics
+    ///
+    /// Panics where [`Reorientation::new`] or [`Spline::new`] does.
+    pub fn over(self, task: Arc<Task>, accuracy: Accuracy) -> Arc<dyn AnyReorientation> {
+        match self {
+            Self::SinePolynomial { terms } => Arc::new(Reorientation::new(task, terms, accuracy)),
+            Self::Spline { pieces, degree } => {
+                let family = Spline::new(&task.start.joints, &task.goal.joints, pieces, degree);
+                Arc::new(Reorientation::over(task, family, accuracy))
+            }
+        }
+    }
+}
+
+/// The task over a family, whichever it is.
+pub trait AnyReorientation: Debug + Send + Sync {
+    /// The task.
+    fn task(&self) -> &Arc<Task>;
+
+    /// The family's name and size.
+    fn spec(&self) -> FamilySpec;
+
+    /// Free coefficients in all.
+    fn dimension(&self) -> usize;
+
+    /// How finely motions are evaluated.
+    fn accuracy(&self) -> Accuracy;
+
+    /// The lanes that motions are evaluated with.
+    fn width(&self) -> Width;
+
+    /// The motion with these coefficients; see [`Reorientation::assess`].
+    ///
+    /// # Panics
+    ///
+    /// Panics when there are more or fewer coefficients than the family's dimension.
+    fn assess(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment;
+
+    /// The motion, sampled; see [`Motion::sample`].
+    fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion;
+
+    /// The paper's powers of time of a motion; see [`SearchedFamily::powers`].
+    fn powers(&self, coefficients: &[f64], duration: f64) -> Option<Vec<Vec<f64>>>;
+
+    /// Coefficients in rows, one per joint.
+    fn rows(&self, coefficients: &[f64]) -> Vec<Vec<f64>> {
+        let own = coefficients.len() / self.task().robot.joint_count();
+        coefficients.chunks_exact(own).map(<[f64]>::to_vec).collect()
+    }
+}
+
+impl<F: SearchedFamily> AnyReorientation for Reorientation<F> {
+    fn task(&self) -> &Arc<Task> {
+        self.task()
+    }
+
+    fn spec(&self) -> FamilySpec {
+        self.family().spec()
+    }
+
+    fn dimension(&self) -> usize {
+        self.family().dimension()
+    }
+
+    fn accuracy(&self) -> Accuracy {
+        self.accuracy()
+    }
+
+    fn width(&self) -> Width {
+        self.width()
+    }
+
+    fn assess(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment {
+        self.assess(coefficients, duration)
+    }
+
+    fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion {
+        Motion::sample(self, coefficients, duration, intervals)
+    }
+
+    fn powers(&self, coefficients: &[f64], duration: f64) -> Option<Vec<Vec<f64>>> {
+        self.family().powers(coefficients, duration)
+    }
+}
