@@ -96,7 +96,9 @@ fn the_recipe_of_a_run_is_pinned() {
 
 /// The subject's identity of the first run of an experiment on the paper's task.
 fn identity(trajectory: &str) -> serde_json::Value {
-    let text = format!("name = 'pinned'\nseeds = 1\n[trajectory]\n{trajectory}\n[[optimiser]]\npso = {{}}\n");
+    let text = format!(
+        "name = 'pinned'\nseeds = 1\n[trajectory]\n{trajectory}\n[[optimiser]]\npso = {{}}\n"
+    );
     let document = Document::embedded("pinned.toml", &text);
     let plan = Experiment::read(&document, &registry()).unwrap().plan().unwrap();
     let recipe: serde_json::Value = serde_json::from_str(&plan.runs[0].recipe).unwrap();

@@ -211,7 +211,8 @@ fn sweeps() {
         ("families_none", instances("family = []")),
         (
             "key_of_no_family",
-            instances("family = ['sine-polynomial']").replace("[sweep]", "[trajectory]\ndegree = 3\n[sweep]"),
+            instances("family = ['sine-polynomial']")
+                .replace("[sweep]", "[trajectory]\ndegree = 3\n[sweep]"),
         ),
         (
             "spline_in_powers_of_time",
@@ -223,7 +224,8 @@ fn sweeps() {
         ("robots_and_tasks", instances("task = ['a.toml']\nrobot = ['xiao2023']")),
         (
             "tasks_of_two_kinds",
-            instances("task = ['a.toml']").replace("[sweep]", "[task.weights]\nbase = 0.5\n[sweep]"),
+            instances("task = ['a.toml']")
+                .replace("[sweep]", "[task.weights]\nbase = 0.5\n[sweep]"),
         ),
         ("setting_unknown", swept("{ poplation = [50, 100] }")),
         ("setting_out_of_range", swept("{ population = [50, 0] }")),
@@ -303,7 +305,9 @@ fn motions() {
         ("missing", "[task.weights]\nbase = 0.5\n".to_owned()),
         (
             "spline_in_powers",
-            format!("[trajectory]\nfamily = 'spline'\n[motion]\nt_f = 6\nalpha6 = {six}\nalpha7 = {six}\n"),
+            format!(
+                "[trajectory]\nfamily = 'spline'\n[motion]\nt_f = 6\nalpha6 = {six}\nalpha7 = {six}\n"
+            ),
         ),
         (
             "spline_of_another_size",

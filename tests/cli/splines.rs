@@ -146,7 +146,8 @@ fn tasks_are_instances() {
         [sweep]\ntask = ['hold.toml', 'own/small.toml']\n[[optimiser]]\nrandom = {}\n";
     let folder = Folder::new().with("tasks.toml", text).with("hold.toml", "[task]\n");
     fs::create_dir(folder.path().join("own")).unwrap();
-    let folder = folder.with("own/three.toml", three.join("[[joint]]")).with("own/small.toml", task);
+    let folder =
+        folder.with("own/three.toml", three.join("[[joint]]")).with("own/small.toml", task);
     run(&folder, &["tasks.toml", "--out", "out"]);
     fs::remove_dir_all(folder.path().join("own")).unwrap();
     let again = folder.run(&["run", "out/experiment.toml", "--out", "out"]);
