@@ -82,7 +82,7 @@ fn limits_and_slopes_are_those_of_the_cost() {
         let timed = problem.timed().unwrap();
         let mut rng = Rng::new(3);
         for far in [false, true] {
-            let mut x = timed.start(&mut rng);
+            let mut x = timed.start(&mut rng, 0.0);
             if far {
                 // Far out of a range.
                 x[2] = problem.bounds().iter().nth(2).unwrap()[1];
@@ -133,7 +133,7 @@ fn every_start_ends_at_the_fastest_free_form_motion() {
     for (pieces, degree, expected) in [(20, 3, 5.6363), (40, 3, 5.6103), (40, 4, 5.6152)] {
         let problem = free_form(&task, pieces, degree);
         for seed in 1..=4 {
-            let start = problem.timed().unwrap().start(&mut Rng::new(seed));
+            let start = problem.timed().unwrap().start(&mut Rng::new(seed), 0.0);
             let watch = Watch::default();
             let mut oracle = Oracle::new(&problem, 1_000, &watch);
             let ending = Scp::default().follow(&mut oracle, &start).unwrap();
@@ -174,7 +174,7 @@ fn narrowed(task: &Task) -> Arc<Task> {
 fn ranges_are_kept() {
     let narrow = narrowed(&paper());
     let problem = free_form(&narrow, 20, 4);
-    let start = problem.timed().unwrap().start(&mut Rng::new(5));
+    let start = problem.timed().unwrap().start(&mut Rng::new(5), 0.0);
     let watch = Watch::default();
     let mut oracle = Oracle::new(&problem, 1_000, &watch);
     Scp::default().follow(&mut oracle, &start).unwrap();

@@ -78,7 +78,7 @@ fn follow(
     let accuracy = Accuracy { attitude_steps: 24, peak_intervals: 1 };
     let problem =
         Formulated::free_form(Arc::new(Reorientation::over(task.clone(), family, accuracy)))?;
-    let start = problem.timed().ok_or("not linear")?.start(&mut Rng::new(seed));
+    let start = problem.timed().ok_or("not linear")?.start(&mut Rng::new(seed), 0.0);
     let watch = Watch::default();
     let mut oracle = Oracle::new(&problem, u64::MAX, &watch);
     let clock = Instant::now();

@@ -26,8 +26,8 @@ where
         + InitialState<Vec<f64>, State = S>,
     S: State<Param = Vec<f64>, Float = f64> + CountsMirror,
 {
-    loop {
-        let start = Scp::random_start(oracle, rng);
+    for drawn in 0.. {
+        let start = Scp::random_start(oracle, rng, drawn);
         let place = |(x, [lower, upper]): (&f64, [f64; 2])| {
             if upper > lower { (x - lower) / (upper - lower) } else { 0.5 }
         };
@@ -39,6 +39,7 @@ where
             error => Failure::new(error.to_string()).into(),
         })?;
     }
+    Ok(())
 }
 
 /// The oracle as basin sees it: its box is the unit cube, and slopes are by the cube's variables.

@@ -14,8 +14,9 @@ use crate::trajectory::{Family, Site};
 /// Sines that a random start is made of.
 const SINES: u32 = 3;
 
-/// The typical amplitude of the first, as a share of half a variable's box.
-const AMPLITUDE: f64 = 0.05;
+/// The typical amplitude of the first, as a share of half a variable's box, of narrow and of wide starts: the narrow ones
+/// are near a fast motion, and where the base is weakly coupled to the arm only wide ones turn it far.
+const AMPLITUDES: [f64; 2] = [0.03, 0.3];
 
 /// Sines per joint along which the error's second derivative is asked for, and the length of the differences that it is
 /// made of.
@@ -102,12 +103,14 @@ impl<F: Family> Timed for Formulated<F> {
     }
 
     /// Every joint leaves the straight path by a few slow sines, at rest at both ends.
-    fn start(&self, rng: &mut Rng) -> Vec<f64> {
+    fn start(&self, rng: &mut Rng, width: f64) -> Vec<f64> {
         let (family, bounds) = (self.task().family(), self.bounds());
         let mut x: Vec<f64> = vec![0.0; family.dimension()];
+        let [least, most] = AMPLITUDES;
+        let typical = least * (most / least).powf(width);
         for joint in 0..family.joints() {
             let amplitudes: Vec<f64> =
-                (1..=SINES).map(|m| AMPLITUDE * rng.normal() / f64::from(m)).collect();
+                (1..=SINES).map(|m| typical * rng.normal() / f64::from(m)).collect();
             let own = family.coefficients_of(joint);
             let count = own.len();
             let variables = x[own.clone()].iter_mut().zip(bounds.iter().skip(own.start));

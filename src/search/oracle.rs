@@ -301,9 +301,9 @@ impl<'a> Oracle<'a> {
         self.problem.timed().map(Timed::weights)
     }
 
-    /// A random point to search a [`Timed`](super::Timed) problem from.
-    pub fn timed_start(&self, rng: &mut Rng) -> Option<Vec<f64>> {
-        self.problem.timed().map(|problem| problem.start(rng))
+    /// A random point to search a [`Timed`](super::Timed) problem from; see [`Timed::start`].
+    pub fn timed_start(&self, rng: &mut Rng, width: f64) -> Option<Vec<f64>> {
+        self.problem.timed().map(|problem| problem.start(rng, width))
     }
 
     /// The second derivative of a Lagrangian at a point, `n × n` for `n` variables.

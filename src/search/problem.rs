@@ -64,7 +64,7 @@ pub trait Problem: Send + Sync {
 ///
 /// It has derivatives where the finer one has, and the same terms and weights.
 pub trait Coarse: Problem {
-    /// The point of the finer problem, within its box, that a point is: linear in it.
+    /// The point of the finer problem, within its box, that a point is: affine in it.
     fn prolong(&self, x: &[f64]) -> Vec<f64>;
 }
 
@@ -137,6 +137,7 @@ pub trait Timed: Problem {
     /// The same at every point.
     fn weights(&self) -> TimedWeights;
 
-    /// A random point to search from: points drawn variable by variable may all be poor, where neighbours belong together.
-    fn start(&self, rng: &mut Rng) -> Vec<f64>;
+    /// A random point to search from, a simple one for a width of zero, one from all over the box for a width of one.
+    /// Points drawn variable by variable may all be poor, where neighbours belong together.
+    fn start(&self, rng: &mut Rng, width: f64) -> Vec<f64>;
 }

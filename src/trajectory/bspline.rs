@@ -89,6 +89,20 @@ impl Knots {
         points[0]
     }
 
+    /// Makes the control points of a spline those of the same one with every piece split into two.
+    pub fn split(&self, points: &[f64]) -> Vec<f64> {
+        let fine = Self { pieces: 2 * self.pieces, degree: self.degree };
+        let point = |i: usize| {
+            // Any piece that the point's basis function is not zero on serves.
+            let piece = i.saturating_sub(self.degree / 2).min(fine.pieces - 1) / 2;
+            let mut own = Local::default();
+            own[..=self.degree].copy_from_slice(&points[piece..=piece + self.degree]);
+            let knots: [f64; MOST_DEGREE] = std::array::from_fn(|r| fine.knot(i + 1 + r));
+            self.blossom(piece, 0, own, &knots)
+        };
+        (0..fine.points()).map(point).collect()
+    }
+
     /// On one piece, the Bernstein coefficients of each basis function of the `order`-th derivative's own
     /// degree: `bernstein[j][i]` is the `j`-th of function `i`.
     pub fn bernstein(&self, piece: usize, order: usize) -> [Local; MOST_DEGREE + 1] {

@@ -128,7 +128,7 @@ pub trait Family: Debug + Clone + Send + Sync + 'static {
         None
     }
 
-    /// The same path's coefficients in the family whose [coarser](Self::coarser) one this is; they are linear in its own.
+    /// The same path's coefficients in the family whose [coarser](Self::coarser) one this is; they are affine in its own.
     fn prolong(&self, coefficients: &[f64]) -> Vec<f64> {
         coefficients.to_vec()
     }

@@ -13,6 +13,9 @@ use crate::scalar::Scalar;
 /// Control points at each end that rest there fixes: with the angle, a rate and an acceleration of zero.
 const FIXED: usize = 3;
 
+/// The fewest pieces that a search begins with, where there are more.
+const COARSEST: usize = 16;
+
 /// All splines of one degree over equal pieces between two configurations, at rest at both.
 ///
 /// ```text
@@ -41,6 +44,11 @@ impl Spline {
     /// both ends leaves nothing free: `pieces + degree` has to be 7 at least.
     pub fn new(start: &[f64], goal: &[f64], pieces: usize, degree: usize) -> Self {
         assert_eq!(start.len(), goal.len(), "a start and a goal for each joint");
+        let ends = start.iter().zip(goal).map(|(start, goal)| [*start, *goal]).collect();
+        Self::between(ends, pieces, degree)
+    }
+
+    fn between(ends: Vec<[f64; 2]>, pieces: usize, degree: usize) -> Self {
         assert!((3..=MOST_DEGREE).contains(&degree), "degree 3, 4 or 5");
         assert!(pieces + degree > 2 * FIXED, "something free");
         let knots = Knots::new(pieces, degree);
@@ -50,7 +58,6 @@ impl Spline {
             _ if i + FIXED >= points => 1.0,
             _ => step::<1>(knots.place_of(i))[0],
         });
-        let ends = start.iter().zip(goal).map(|(start, goal)| [*start, *goal]).collect();
         Self { straight: straight.collect(), knots, ends }
     }
 
@@ -223,6 +230,28 @@ impl Family for Spline {
         let (support, begin) = &nodes.supports[first / MOST];
         let bump = &nodes.bumps[begin + k - support.start];
         [T::load(&bump[0].0[first % MOST..]), T::load(&bump[1].0[first % MOST..])]
+    }
+
+    /// Half as many pieces.
+    fn coarser(&self) -> Option<Self> {
+        let half = self.knots.pieces() / 2;
+        let is_one = self.knots.pieces().is_multiple_of(2) && half >= COARSEST;
+        is_one.then(|| Self::between(self.ends.clone(), half, self.knots.degree()))
+    }
+
+    fn prolong(&self, coefficients: &[f64]) -> Vec<f64> {
+        let finer = Self::between(self.ends.clone(), 2 * self.knots.pieces(), self.knots.degree());
+        let mut own = vec![0.0; self.knots.points()];
+        let mut straight = vec![0.0; finer.knots.points()];
+        let mut all = Vec::with_capacity(finer.dimension());
+        for joint in 0..self.joints() {
+            self.write_points(joint, &coefficients[self.coefficients_of(joint)], &mut own);
+            finer.write_points(joint, &[], &mut straight);
+            let points = self.knots.split(&own);
+            let free = FIXED..FIXED + finer.free();
+            all.extend(points[free.clone()].iter().zip(&straight[free]).map(|(p, s)| p - s));
+        }
+        all
     }
 
     fn sampler(&self, _intervals: usize) -> SplineSampler {

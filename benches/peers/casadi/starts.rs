@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         told["start_end"] = json!([end.w, end.i, end.j, end.k]);
         told["points"] = points(fine.family(), found).into();
     };
-    tell(&problem, seeds, |rng| timed.start(rng), more)
+    tell(&problem, seeds, |rng| timed.start(rng, 0.0), more)
 }
 
 /// Follows the start of every seed to its end and says what comes of it, and more of start and end.

@@ -4,6 +4,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::search::Bend;
 
+/// What is known or said to be flat has this share of the largest curvature, lest steps go far for next to nothing.
+const FLOOR: f64 = 1e-4;
+
 /// A curvature below this share of the largest is none.
 const NOTHING: f64 = 1e-3;
 
@@ -58,9 +61,11 @@ impl Bends {
     }
 }
 
-/// A positive semidefinite second derivative `Σ c_i q_i q_iᵀ` with orthonormal `q_i`.
+/// A positive semidefinite second derivative `c_0 I + Σ c_i q_i q_iᵀ` with orthonormal `q_i`.
 #[derive(Default)]
 pub(super) struct Curvature {
+    /// `c_0`.
+    pub(super) floor: f64,
     pub(super) directions: Vec<DVector<f64>>,
     pub(super) along: Vec<f64>,
 }
@@ -76,6 +81,7 @@ impl Curvature {
             f64::midpoint(bends[i].direction.dot(&images[j]), bends[j].direction.dot(&images[i]))
         };
         let eigen = DMatrix::from_fn(bends.len(), bends.len(), entry).symmetric_eigen();
+        curvature.floor = FLOOR * eigen.eigenvalues.amax();
         let least = NOTHING * eigen.eigenvalues.amax();
         for (value, shares) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
             if *value > least {
@@ -85,7 +91,7 @@ impl Curvature {
                     sum + &bend.direction * *share
                 };
                 curvature.directions.push(parts.fold(zero, sum));
-                curvature.along.push(*value);
+                curvature.along.push(*value - curvature.floor);
             }
         }
         curvature
@@ -94,7 +100,8 @@ impl Curvature {
     /// `½ dᵀ B d`.
     pub(super) fn energy(&self, d: &DVector<f64>) -> f64 {
         let parts = self.directions.iter().zip(&self.along);
-        parts.map(|(q, c)| c * q.dot(d).powi(2)).sum::<f64>() / 2.0
+        (self.floor * d.norm_squared() + parts.map(|(q, c)| c * q.dot(d).powi(2)).sum::<f64>())
+            / 2.0
     }
 }
 

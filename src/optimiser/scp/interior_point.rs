@@ -309,6 +309,7 @@ impl Program<'_> {
                 *by_d -= state.cone.z[i + 1] * slope;
             }
         }
+        by_d.axpy(self.curvature.floor, &state.d, 1.0);
         for (q, c) in self.curvature.directions.iter().zip(&self.curvature.along) {
             by_d.axpy(c * q.dot(&state.d), q, 1.0);
         }
@@ -396,7 +397,8 @@ impl<'a> Newton<'a> {
             while next < before {
                 let pairs = &bounds[2 * next..2 * next + 2];
                 let mut entries = [0.0; WIDTH + BORDER];
-                entries[0] = (ratio(&pairs[0]) + ratio(&pairs[1])).sqrt();
+                let floor = program.curvature.floor;
+                entries[0] = (ratio(&pairs[0]) + ratio(&pairs[1]) + floor).sqrt();
                 triangle.absorb(next, entries);
                 next += 1;
             }
@@ -544,6 +546,7 @@ impl<'a> Newton<'a> {
         for k in 0..BORDER {
             r_f[n + k] += by_beta[k];
         }
+        r_f.rows_mut(0, n).axpy(-program.curvature.floor, &x.rows(0, n), 1.0);
         let mut r_g = g.clone();
         for (i, row) in self.border.chunks_exact(columns).enumerate().take(n) {
             for (k, entry) in row.iter().enumerate() {

@@ -140,11 +140,12 @@ impl Scp {
         oracle: &mut Oracle<'_>,
         rng: &mut Rng,
     ) -> Result<Vec<Best>, Stop> {
-        let coarse = oracle.on_coarser(|oracle| self.follow_random(starts, oracle, rng))?;
+        let loose = Self { tolerance: self.tolerance.max(LOOSE), ..self.clone() };
+        let coarse = oracle.on_coarser(|oracle| loose.follow_random(starts, oracle, rng))?;
         let followed = coarse.as_ref().map_or(starts, Vec::len);
         let mut ends = Vec::new();
         for k in 0..followed {
-            let random = || Self::random_start(oracle, rng);
+            let random = || Self::random_start(oracle, rng, k);
             let start = coarse.as_ref().map_or_else(random, |ends| ends[k].x.clone());
             let budget = oracle.remaining();
             ends.extend(oracle.within(budget, |oracle| self.follow(oracle, &start).map(drop))?);
@@ -162,9 +163,10 @@ impl Scp {
         self.starts.map_or(100, NonZeroUsize::get)
     }
 
-    /// Draws a start: the problem's own, where it is timed.
-    pub(super) fn random_start(oracle: &Oracle<'_>, rng: &mut Rng) -> Vec<f64> {
-        let own = oracle.timed_start(rng);
+    /// Draws the start after `drawn` others: the problem's own, where it is timed, the first the narrowest.
+    pub(super) fn random_start(oracle: &Oracle<'_>, rng: &mut Rng, drawn: usize) -> Vec<f64> {
+        let width = (drawn as f64 * GOLDEN).fract();
+        let own = oracle.timed_start(rng, width);
         own.unwrap_or_else(|| Self::start(oracle.bounds(), rng))
     }
 
@@ -232,8 +234,14 @@ const GROWTH: f64 = 10.0;
 /// Of the starts on one level, one in so many goes on to the next finer one.
 const REDUCTION: usize = 4;
 
+/// The tolerance of coarser problems, whose ends are starts only.
+const LOOSE: f64 = 1e-5;
+
 /// Ends whose costs differ by less than this share are one.
 const SAME: f64 = 1e-5;
+
+/// Multiples of the golden ratio, without their whole part, lie evenly in the unit interval, however many there are.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// Share of the start's cost below which a cost is as good as none.
 const NOTHING: f64 = 1e-6;

@@ -241,8 +241,9 @@ impl Model<'_> {
             all.push(direction.iter().copied().enumerate().chain([(t + 1 + i, -1.0)]), 0.0);
         }
         let cones = [NonnegativeConeT(inequalities), SecondOrderConeT(norm), ZeroConeT(m)];
-        let places: Vec<usize> = (t + 1..size).collect();
-        let along = curvature.along.clone();
+        let places: Vec<usize> = (0..n).chain(t + 1..size).collect();
+        let floor = std::iter::repeat_n(curvature.floor, n);
+        let along = floor.chain(curvature.along.iter().copied()).collect();
         let p = CscMatrix::new_from_triplets(size, size, places.clone(), places, along);
         let a = all.matrix(size);
         let solution = by_clarabel(&p, &q, &a, &all.b, &cones, GAP)?;
@@ -296,6 +297,7 @@ mod tests {
         let limits = LinearLimits { time: asked(true), excess: asked(false), list: list.clone() };
         let x = DVector::zeros(n);
         let curvature = Curvature {
+            floor: 0.01,
             directions: (0..4)
                 .map(|k| DVector::from_fn(n, |i, _| 0.1 * wave(i, 0.4 * f64::from(k))))
                 .collect(),
