@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 results=${1:-results}
 gallery=docs/gallery
 
-for experiment in default functions poses jerk-sweep weight-sweep terms-sweep; do
+for experiment in default functions poses free-form jerk-sweep weight-sweep terms-sweep; do
     driftless run "experiments/$experiment.toml" --out "$results/$experiment" --quiet
 done
 
@@ -16,7 +16,7 @@ for picture in \
     poses/convergence.svg poses/final-costs.svg \
     poses/running-time-distribution.svg poses/expected-running-time.svg \
     functions/performance-profiles.svg functions/data-profiles.svg \
-    poses/critical-difference.svg functions/effect-sizes.svg \
+    poses/critical-difference.svg functions/effect-sizes.svg free-form/dimensions.svg \
     jerk-sweep/jerk-sweep.svg weight-sweep/weight-sweep.svg terms-sweep/terms-sweep.svg weight-sweep/pareto.svg \
     default/snapshots.svg default/joint-angles.svg default/joint-derivatives.png default/base-attitude.svg; do
     cp "$results/${picture%/*}/figures/${picture#*/}" "$gallery"

@@ -259,8 +259,13 @@ impl Plan {
         }
         if self.entry || beaten.is_some() {
             let Accuracy { attitude_steps, peak_intervals } = problem.accuracy();
+            let spec = problem.family().spec();
+            let family =
+                spec.pieces().zip(spec.degree()).map_or_else(String::new, |(n, degree)| {
+                    format!(" --family spline --pieces {n} --degree {degree}")
+                });
             let found_by = format!(
-                "driftless plan --optimiser {} --seed {} --budget {}, attitude_steps = \
+                "driftless plan --optimiser {} --seed {} --budget {}{family}, attitude_steps = \
                  {attitude_steps}, peak_intervals = {peak_intervals}",
                 self.optimiser, self.seed, self.budget
             );

@@ -6,6 +6,7 @@ use super::comparison::{effect_sizes, final_costs};
 use super::convergence::convergence;
 use super::critical_difference::critical_difference;
 use super::curves::curves;
+use super::dimensions::dimensions;
 use super::looks::Looks;
 use super::running_times::{expected_running_time, profiles, running_time_distribution};
 use crate::experiment::Entrant;
@@ -129,6 +130,23 @@ fn costs(spread: f64) -> Figure {
     final_costs(&frame.unwrap(), &Looks::of(&field), "J").unwrap().unwrap()
 }
 
+fn growth(count: usize) -> Figure {
+    let field = field(count);
+    let labels = labels(&field);
+    let variables = [6.0, 12.0, 36.0, 84.0, 180.0];
+    let rows = || rows(&["sine-polynomial", "spline"], &labels, &variables);
+    let cost = |i: usize, x: f64| 0.56 + 0.02 * i as f64 * x.powf(0.3 * i as f64);
+    let frame = df!(
+        "series" => rows().map(|r| r.0).collect::<Vec<_>>(),
+        "optimiser" => rows().map(|r| r.2).collect::<Vec<_>>(),
+        "variables" => real(rows().map(|r| r.3)),
+        "median" => real(rows().map(|(_, i, _, x)| {
+            if i == 4 && x > 100.0 { f64::INFINITY } else { cost(i, x) }
+        })),
+    );
+    dimensions(&frame.unwrap(), &Looks::of(&field), "J").unwrap().unwrap()
+}
+
 fn ranks(count: usize) -> (Vec<Entrant>, DataFrame) {
     let field = field(count);
     let means: Vec<f64> = (0..count).map(|i| 1.1 + 0.9 * i as f64).collect();
@@ -166,6 +184,7 @@ fn charts() -> Vec<(&'static str, Figure)> {
             convergence_of(6, &["sphere", "ellipsoid", "rastrigin", "rosenbrock"]),
         ),
         ("convergence-crowd", convergence_of(20, &[""])),
+        ("dimensions", growth(5)),
         ("running-time-distribution", distribution()),
         ("expected-running-time", expectation()),
         ("performance-profiles", profile("ratio", "ratio to the fewest evaluations")),

@@ -94,8 +94,7 @@ impl SearchedFamily for Spline {
             Formulation::TimeFree => Formulated::free_form(task),
             Formulation::Scaled => Formulated::free_form_scaled(task, boxes),
             Formulation::Raw => {
-                let reason = "`raw` is of the paper's powers of time, which splines do not have; expected `time-free` or \
-                              `scaled`";
+                let reason = "splines have no powers of time, expected `time-free` or `scaled`";
                 return Err(Failure::new(reason));
             }
         };

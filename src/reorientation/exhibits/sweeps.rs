@@ -143,7 +143,7 @@ impl Sweep {
 }
 
 /// The best motions over one setting: over the weight of the base residual and duration, over
-/// a limit the duration, over the number of terms the cost. None where the setting does not vary.
+/// a limit the duration, over the number of terms or pieces the cost. None where the setting does not vary.
 ///
 /// Over jerk limits a reference tells what follows while jerk alone limits the motion, `t_f ∝ j̄^(−1/3)`. `bound` is the
 /// least cost whatever the number of terms, where it is known.

@@ -238,6 +238,7 @@ fn charts() -> Vec<(&'static str, Figure)> {
         ("jerk-sweep", swept(Swept::JerkLimit, &[20.0, 40.0, 80.0, 160.0, 320.0, 640.0], None)),
         ("rate-sweep", swept(Swept::RateLimit, &[10.0, 20.0, 40.0, 60.0], None)),
         ("terms-sweep", swept(Swept::Terms, &[1.0, 2.0, 3.0, 4.0, 8.0], Some(0.6))),
+        ("pieces-sweep", swept(Swept::Pieces, &[4.0, 8.0, 16.0, 32.0, 64.0], None)),
         ("pareto", front()),
         ("joint-angles", joint_angles(&motion())),
         ("joint-derivatives", derivatives(&motion(), &task.limits)),
