@@ -142,13 +142,18 @@ impl Scp {
     ) -> Result<Vec<Best>, Stop> {
         let loose = Self { tolerance: self.tolerance.max(LOOSE), ..self.clone() };
         let coarse = oracle.on_coarser(|oracle| loose.follow_random(starts, oracle, rng))?;
-        let followed = coarse.as_ref().map_or(starts, Vec::len);
+        // Smaller weights than the problem's own would lead away from where an end has brought the norms.
+        let onward = Self { first_weight: f64::INFINITY, ..self.clone() };
+        let (settings, followed) = match &coarse {
+            Some(ends) => (&onward, ends.len()),
+            None => (self, starts),
+        };
         let mut ends = Vec::new();
         for k in 0..followed {
             let random = || Self::random_start(oracle, rng, k);
             let start = coarse.as_ref().map_or_else(random, |ends| ends[k].x.clone());
             let budget = oracle.remaining();
-            ends.extend(oracle.within(budget, |oracle| self.follow(oracle, &start).map(drop))?);
+            ends.extend(oracle.within(budget, |oracle| settings.follow(oracle, &start).map(drop))?);
         }
         ends.sort_by(|a, b| a.evaluation.cost.total_cmp(&b.evaluation.cost));
         ends.dedup_by(|b, a| {
