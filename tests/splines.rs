@@ -1,10 +1,11 @@
 //! Splines in the kernels: the base's rotation along them, beside a plain integration.
 
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use driftless::input::Document;
 use driftless::momentum::base_twist;
-use driftless::optimiser::{Ending, Scp};
+use driftless::optimiser::{Ending, Optimiser as _, Scp};
 use driftless::reorientation::{Accuracy, Formulated, Reorientation, TaskFile};
 use driftless::robot::Robot;
 use driftless::search::{LinearLimit, Oracle, Problem as _, Rng, Watch};
@@ -158,6 +159,57 @@ fn every_start_ends_at_the_fastest_free_form_motion() {
             assert!(end.angle().to_degrees() < 1e-5, "{}", end.angle().to_degrees());
         }
     }
+}
+
+/// A path with half as many pieces is one of the finer family, whatever the degree, and stays in its box.
+#[test]
+fn splitting_the_pieces_leaves_paths_as_they_are() {
+    let task = paper();
+    for degree in [3, 4, 5] {
+        let fine = free_form(&task, 40, degree);
+        let coarse = fine.coarser().unwrap();
+        let x = coarse.timed().unwrap().start(&mut Rng::new(3), 1.0);
+        let prolonged = coarse.prolong(&x);
+        assert!(
+            prolonged.iter().zip(fine.bounds().iter()).all(|(x, [a, b])| (a..=b).contains(&*x))
+        );
+        let half = Spline::new(&task.start.joints, &task.goal.joints, 20, degree);
+        assert_eq!(
+            (half.dimension(), fine.task().family().dimension()),
+            (x.len(), prolonged.len())
+        );
+        for joint in 0..half.joints() {
+            let own = half.curve(joint, &x[half.coefficients_of(joint)]);
+            let family = fine.task().family();
+            let split = family.curve(joint, &prolonged[family.coefficients_of(joint)]);
+            for i in 0..=500 {
+                let tau = f64::from(i) / 500.0;
+                let [a, b] = [own.derivatives::<3>(tau), split.derivatives::<3>(tau)];
+                for (a, b) in a.iter().zip(b) {
+                    assert!(
+                        (a - b).abs() < 1e-9 * (1.0 + a.abs()),
+                        "degree {degree}, {tau}: {a} and {b}"
+                    );
+                }
+            }
+        }
+        let [a, b] = [coarse.evaluate(&x), fine.evaluate(&prolonged)].map(|e| e.unwrap().cost);
+        assert!((a - b).abs() < 1e-6 * b, "degree {degree}: {a} and {b}");
+    }
+    assert!(free_form(&task, 31, 4).coarser().is_none());
+}
+
+/// By way of fewer pieces, a search ends at the fastest motion as well.
+#[test]
+fn a_search_by_way_of_fewer_pieces_ends_at_the_fastest_motion() {
+    let problem = free_form(&paper(), 40, 4);
+    let watch = Watch::default();
+    let mut oracle = Oracle::new(&problem, 10_000, &watch);
+    let search = Scp { starts: NonZeroUsize::new(4), ..Scp::default() };
+    search.minimise(&mut oracle, &mut Rng::new(1)).unwrap();
+    let (_, motion) = problem.certify(&oracle.best().unwrap().x);
+    assert!(motion.duration <= 5.6152, "{} s", motion.duration);
+    assert!(motion.residual().to_degrees() < 1e-6, "{}°", motion.residual().to_degrees());
 }
 
 /// The paper's task with a narrower range of the fourth joint.
