@@ -168,13 +168,14 @@ fn check(plan: &Plan, mood: Mood, always: bool, runs: &DataFrame, traces: &DataF
     let evaluations = whole(runs, "evaluations", i);
     let entrant = &plan.optimisers[run.optimiser];
     let differentiates = entrant.needs_derivatives();
-    // `scp` has to differentiate before anything else.
-    let fewest = u64::from(entrant.kind() != "scp");
+    // These have to differentiate before anything else.
+    let at_once = ["scp", "l-bfgs-b", "slsqp"].contains(&entrant.kind());
+    let fewest = u64::from(!at_once);
     assert!((fewest..=run.budget).contains(&evaluations), "{context}: {evaluations}");
     assert_eq!(text(runs, "key", i), run.key);
     assert!(runs.column("formulation").unwrap().get(i).unwrap().is_null(), "{context}");
     let expected: &[&str] = match mood {
-        _ if entrant.kind() == "scp" => &["no-derivatives"],
+        _ if at_once => &["no-derivatives"],
         Mood::Panics if always => &["panicked"],
         Mood::Panics if differentiates => &["panicked", "no-derivatives", "budget-spent"],
         Mood::Panics => &["panicked", "budget-spent", "finished"],

@@ -109,7 +109,7 @@ impl Curvature {
 mod tests {
     use super::*;
 
-    /// Of `r_k = ½ xᵀ H_k x` the curvature is that of `Σ ν_k H_k`, without what is negative.
+    /// Of `r_k = ½ xᵀ H_k x` the curvature is that of `Σ ν_k H_k`, with the floor in place of what is negative.
     #[test]
     fn the_curvature_of_a_quadratic_is_found() {
         let n = 6;
@@ -142,7 +142,7 @@ mod tests {
         let eigen = sum.symmetric_eigen();
         let mut positive: Vec<f64> =
             eigen.eigenvalues.iter().copied().filter(|v| *v > 0.0).collect();
-        let mut along = found.along.clone();
+        let mut along: Vec<f64> = found.along.iter().map(|c| c + found.floor).collect();
         positive.sort_by(f64::total_cmp);
         along.sort_by(f64::total_cmp);
         assert_eq!(along.len(), positive.len());
@@ -151,7 +151,7 @@ mod tests {
         }
         let d = DVector::from_fn(n, |i, _| f64::cos(2.0 * i as f64));
         let clipped = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());
-        let energy: f64 = clipped.map(|(v, q)| v.max(0.0) * q.dot(&d).powi(2) / 2.0).sum();
+        let energy: f64 = clipped.map(|(v, q)| v.max(found.floor) * q.dot(&d).powi(2) / 2.0).sum();
         assert!((found.energy(&d) - energy).abs() < 1e-9 * energy);
     }
 }
