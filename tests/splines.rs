@@ -170,9 +170,7 @@ fn splitting_the_pieces_leaves_paths_as_they_are() {
         let coarse = fine.coarser().unwrap();
         let x = coarse.timed().unwrap().start(&mut Rng::new(3), 1.0);
         let prolonged = coarse.prolong(&x);
-        assert!(
-            prolonged.iter().zip(fine.bounds().iter()).all(|(x, [a, b])| (a..=b).contains(&*x))
-        );
+        assert!(prolonged.iter().zip(fine.bounds().iter()).all(|(x, [a, b])| (a..=b).contains(x)));
         let half = Spline::new(&task.start.joints, &task.goal.joints, 20, degree);
         assert_eq!(
             (half.dimension(), fine.task().family().dimension()),

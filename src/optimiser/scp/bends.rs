@@ -100,8 +100,8 @@ impl Curvature {
     /// `½ dᵀ B d`.
     pub(super) fn energy(&self, d: &DVector<f64>) -> f64 {
         let parts = self.directions.iter().zip(&self.along);
-        (self.floor * d.norm_squared() + parts.map(|(q, c)| c * q.dot(d).powi(2)).sum::<f64>())
-            / 2.0
+        let along: f64 = parts.map(|(q, c)| c * q.dot(d).powi(2)).sum();
+        0.5 * (self.floor * d.norm_squared() + along)
     }
 }
 
