@@ -15,8 +15,8 @@ use super::{CliError, read_or, shown, warn_of, watch};
 use crate::input::{InputError, nearest};
 use crate::optimiser::{Scp, Settings};
 use crate::reorientation::{
-    Accuracy, Assessment, BestKnown, FamilyName, Formulated, Formulation, Reorientation,
-    SearchedFamily, TaskFile, TaskProblem, TrajectoryTable,
+    Accuracy, Assessment, BestKnown, FamilyName, FamilySpec, Formulated, Formulation,
+    Reorientation, SearchedFamily, TaskFile, TaskProblem, TrajectoryTable,
 };
 use crate::search::{BoundsError, Oracle, Rng, Stop};
 use crate::task::TaskTable;
@@ -67,13 +67,8 @@ struct PlanJson<'a> {
     task: String,
     optimiser: &'a str,
     seed: u64,
-    family: &'a str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    terms: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pieces: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    degree: Option<usize>,
+    #[serde(flatten)]
+    family: FamilySpec,
     best_known_j: Option<f64>,
     #[serde(flatten)]
     assessment: AssessmentJson,
@@ -259,11 +254,12 @@ impl Plan {
         }
         if self.entry || beaten.is_some() {
             let Accuracy { attitude_steps, peak_intervals } = problem.accuracy();
-            let spec = problem.family().spec();
-            let family =
-                spec.pieces().zip(spec.degree()).map_or_else(String::new, |(n, degree)| {
-                    format!(" --family spline --pieces {n} --degree {degree}")
-                });
+            let family = match problem.family().spec() {
+                FamilySpec::SinePolynomial { .. } => String::new(),
+                FamilySpec::Spline { pieces, degree } => {
+                    format!(" --family spline --pieces {pieces} --degree {degree}")
+                }
+            };
             let found_by = format!(
                 "driftless plan --optimiser {} --seed {} --budget {}{family}, attitude_steps = \
                  {attitude_steps}, peak_intervals = {peak_intervals}",
@@ -277,15 +273,11 @@ impl Plan {
 
     fn json<F: SearchedFamily>(&self, found: &Found<F>, known: Option<&BestKnown>) -> String {
         let (problem, duration) = (found.problem.task(), found.assessment.duration);
-        let spec = problem.family().spec();
         let json = PlanJson {
             task: shown(self.file.as_ref(), "xiao2023"),
             optimiser: &self.optimiser,
             seed: self.seed,
-            family: spec.name().name(),
-            terms: spec.terms(),
-            pieces: spec.pieces(),
-            degree: spec.degree(),
+            family: problem.family().spec(),
             best_known_j: known.map(|known| known.j),
             assessment: (&found.assessment).into(),
             shape: ShapeJson::new(problem, &found.coefficients, duration),

@@ -176,9 +176,7 @@ impl Analytic {
     pub fn rotation(&self) -> &DMatrix<f64> {
         &self.rotation
     }
-}
 
-impl Analytic {
     /// `R (x − x*) + o`.
     fn placed(&self, x: &[f64]) -> DVector<f64> {
         let offset = DVector::from_column_slice(x) - &self.optimum;

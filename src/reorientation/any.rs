@@ -58,7 +58,7 @@ impl SearchedFamily for SinePolynomial {
         task: Arc<Reorientation>,
         boxes: &Boxes,
     ) -> Result<Formulated, Failure> {
-        Formulated::new(formulation, task, boxes).map_err(|error| Failure::new(error.to_string()))
+        Ok(Formulated::new(formulation, task, boxes)?)
     }
 
     #[cfg(feature = "harness")]
@@ -90,15 +90,15 @@ impl SearchedFamily for Spline {
         task: Arc<Reorientation<Self>>,
         boxes: &SplineBox,
     ) -> Result<Formulated<Self>, Failure> {
-        let formulated = match formulation {
-            Formulation::TimeFree => Formulated::free_form(task),
-            Formulation::Scaled => Formulated::free_form_scaled(task, boxes),
+        Ok(match formulation {
+            Formulation::TimeFree => Formulated::free_form(task)?,
+            Formulation::Scaled => Formulated::free_form_scaled(task, boxes)?,
             Formulation::Raw => {
-                let reason = "splines have no powers of time, expected `time-free` or `scaled`";
-                return Err(Failure::new(reason));
+                return Err(
+                    "splines have no powers of time, expected `time-free` or `scaled`".into()
+                );
             }
-        };
-        formulated.map_err(|error| Failure::new(error.to_string()))
+        })
     }
 
     #[cfg(feature = "harness")]

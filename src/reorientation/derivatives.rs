@@ -34,11 +34,11 @@ impl<F: Family> Reorientation<F> {
         let weights = self.terms().timed();
         // The error and the excess over the ranges do not follow the duration.
         let untimed = TimedWeights { time: 0.0, ..weights };
+        let samples = self.samples(coefficients);
         let is_linear = self.family().is_linear();
-        let limits = if is_linear { self.limits(coefficients) } else { LinearLimits::default() };
+        let limits = if is_linear { self.limits(&samples) } else { LinearLimits::default() };
         let mut slopes = untimed.subgradient(&limits, &self.error_slopes(coefficients)).slopes;
         let mut by_duration = weights.time;
-        let samples = self.samples(coefficients);
         let peaks = self.family().peaks(&samples, coefficients);
         let curves: Vec<_> = self.curves(coefficients).collect();
         for order in 1..=3 {
@@ -61,7 +61,7 @@ impl<F: Family> Reorientation<F> {
     }
 
     /// The path with these coefficients, sampled.
-    fn samples(&self, coefficients: &[f64]) -> F::Samples {
+    pub(super) fn samples(&self, coefficients: &[f64]) -> F::Samples {
         let mut samples = self.workspace().samples;
         self.width().run(Sampling { problem: self, coefficients, samples: &mut samples });
         samples

@@ -34,7 +34,8 @@ impl FamilyName {
 }
 
 /// A family between any two configurations: its name, and how many free coefficients it has for each joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(tag = "family", rename_all = "kebab-case")]
 pub enum FamilySpec {
     /// The paper's.
     SinePolynomial {

@@ -1,6 +1,6 @@
 //! The same task in different variables.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
@@ -57,12 +57,14 @@ pub struct Formulated<F: Family = SinePolynomial> {
     bounds: Bounds,
     /// The family whose powers of time the variables are, where they are.
     powers: Option<SinePolynomial>,
-    /// The same over the family's coarser one; only where the duration is no variable.
-    coarser: Option<Arc<Self>>,
+    /// Makes the same over the family's coarser one, where the duration is no variable.
+    make_coarser: fn(&Self) -> Option<Self>,
+    /// What that made, once somebody asked.
+    coarser: OnceLock<Option<Box<Self>>>,
 }
 
 impl Formulated {
-    /// The task in these variables, within these boxes of its own family, or of one with more terms.
+    /// The task in these variables, within these boxes of its own family.
     pub fn new(
         formulation: Formulation,
         task: Arc<Reorientation>,
@@ -74,8 +76,7 @@ impl Formulated {
                 boxes.alpha.iter().flat_map(|&a| vec![[-a, a]; family.joints()]).collect()
             }
             Formulation::Scaled | Formulation::TimeFree => {
-                let widths = boxes.coefficient.iter().take(family.terms());
-                let joint: Vec<_> = widths.map(|&c| [-c, c]).collect();
+                let joint: Vec<_> = boxes.coefficient.iter().map(|&c| [-c, c]).collect();
                 joint.repeat(family.joints())
             }
         };
@@ -83,13 +84,23 @@ impl Formulated {
             pairs.push(boxes.duration);
         }
         let powers = (formulation == Formulation::Raw).then(|| family.clone());
-        let coarser = match formulation {
-            Formulation::TimeFree => task.coarser(),
-            Formulation::Raw | Formulation::Scaled => None,
-        };
-        let coarser = coarser.map(|task| Self::new(formulation, Arc::new(task), boxes));
-        let coarser = coarser.transpose()?.map(Arc::new);
-        Ok(Self { formulation, task, bounds: Bounds::new(pairs)?, powers, coarser })
+        Ok(Self {
+            formulation,
+            task,
+            bounds: Bounds::new(pairs)?,
+            powers,
+            make_coarser: Self::with_fewer_terms,
+            coarser: OnceLock::new(),
+        })
+    }
+
+    fn with_fewer_terms(&self) -> Option<Self> {
+        let task = Arc::new(self.task.coarser()?);
+        let all: Vec<[f64; 2]> = self.bounds.iter().collect();
+        let joints = all.chunks_exact(self.task.family().terms());
+        let pairs = joints.flat_map(|own| &own[..task.family().terms()]).copied().collect();
+        let bounds = Bounds::new(pairs).ok()?;
+        Some(Self { task, bounds, coarser: OnceLock::new(), ..self.clone() })
     }
 }
 
@@ -105,10 +116,14 @@ impl Formulated<Spline> {
             let own = &straight[family.fixed()..straight.len() - family.fixed()];
             pairs.extend(own.iter().map(|point| [lower - more - point, upper + more - point]));
         }
-        let bounds = Bounds::new(pairs)?;
-        let coarser = task.coarser().map(|task| Self::free_form(Arc::new(task))).transpose()?;
-        let (formulation, coarser) = (Formulation::TimeFree, coarser.map(Arc::new));
-        Ok(Self { formulation, task, bounds, powers: None, coarser })
+        Ok(Self {
+            formulation: Formulation::TimeFree,
+            task,
+            bounds: Bounds::new(pairs)?,
+            powers: None,
+            make_coarser: |own| Self::free_form(Arc::new(own.task.coarser()?)).ok(),
+            coarser: OnceLock::new(),
+        })
     }
 
     /// The same with the duration as the last variable, in its box.
@@ -210,7 +225,11 @@ impl<F: Family> Problem for Formulated<F> {
     }
 
     fn coarser(&self) -> Option<&dyn Coarse> {
-        self.coarser.as_deref().map(|coarser| coarser as &dyn Coarse)
+        if self.formulation != Formulation::TimeFree {
+            return None;
+        }
+        let coarser = self.coarser.get_or_init(|| (self.make_coarser)(self).map(Box::new));
+        coarser.as_deref().map(|coarser| coarser as &dyn Coarse)
     }
 
     fn slopes(&self) -> Option<Slopes<'_>> {

@@ -28,12 +28,10 @@ const ORDERS: usize = 4;
 
 impl<F: Family> Reorientation<F> {
     /// What the shortest duration follows from, and by how much joints leave their ranges.
-    pub(super) fn limits(&self, coefficients: &[f64]) -> LinearLimits {
-        let mut samples = self.workspace().samples;
+    pub(super) fn limits(&self, samples: &F::Samples) -> LinearLimits {
         let (task, family, tables) = (self.task(), self.family(), self.tables());
-        family.sample::<f64>(&tables.sampler, coefficients, &mut samples);
         let mut limits = LinearLimits::default();
-        family.sites(&samples, &mut |site: &Site| {
+        family.sites(samples, &mut |site: &Site| {
             let (middle, most) = match site.order {
                 0 => {
                     let [lower, upper] = tables.ranges[site.joint];
@@ -80,7 +78,7 @@ fn smooth_directions<F: Family>(family: &F) -> impl Iterator<Item = DVector<f64>
 
 impl<F: Family> Timed for Formulated<F> {
     fn limits(&self, x: &[f64]) -> Result<LinearLimits, Failure> {
-        Ok(self.task().limits(x))
+        Ok(self.task().limits(&self.task().samples(x)))
     }
 
     fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure> {
@@ -103,11 +101,11 @@ impl<F: Family> Timed for Formulated<F> {
     }
 
     /// Every joint leaves the straight path by a few slow sines, at rest at both ends.
-    fn start(&self, rng: &mut Rng, width: f64) -> Vec<f64> {
+    fn start(&self, rng: &mut Rng, spread: f64) -> Vec<f64> {
         let (family, bounds) = (self.task().family(), self.bounds());
         let mut x: Vec<f64> = vec![0.0; family.dimension()];
         let [least, most] = AMPLITUDES;
-        let typical = least * (most / least).powf(width);
+        let typical = least * (most / least).powf(spread);
         for joint in 0..family.joints() {
             let amplitudes: Vec<f64> =
                 (1..=SINES).map(|m| typical * rng.normal() / f64::from(m)).collect();

@@ -1,5 +1,7 @@
 //! Why a problem could not be evaluated.
 
+use super::points::BoundsError;
+
 /// A problem's reason for not evaluating a point, such as a simulator that died.
 ///
 /// It ends the run. A point that is merely bad has an infinite or NaN cost instead: the run goes on.
@@ -24,6 +26,12 @@ impl Failure {
 impl From<String> for Failure {
     fn from(reason: String) -> Self {
         Self::new(reason)
+    }
+}
+
+impl From<BoundsError> for Failure {
+    fn from(error: BoundsError) -> Self {
+        Self::new(error.to_string())
     }
 }
 

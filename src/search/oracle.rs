@@ -302,8 +302,8 @@ impl<'a> Oracle<'a> {
     }
 
     /// A random point to search a [`Timed`](super::Timed) problem from; see [`Timed::start`].
-    pub fn timed_start(&self, rng: &mut Rng, width: f64) -> Option<Vec<f64>> {
-        self.problem.timed().map(|problem| problem.start(rng, width))
+    pub fn timed_start(&self, rng: &mut Rng, spread: f64) -> Option<Vec<f64>> {
+        self.problem.timed().map(|problem| problem.start(rng, spread))
     }
 
     /// The second derivative of a Lagrangian at a point, `n × n` for `n` variables.

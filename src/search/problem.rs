@@ -137,7 +137,7 @@ pub trait Timed: Problem {
     /// The same at every point.
     fn weights(&self) -> TimedWeights;
 
-    /// A random point to search from, a simple one for a width of zero, one from all over the box for a width of one.
+    /// A random point to search from, a simple one for a spread of zero, one from all over the box for a spread of one.
     /// Points drawn variable by variable may all be poor, where neighbours belong together.
-    fn start(&self, rng: &mut Rng, width: f64) -> Vec<f64>;
+    fn start(&self, rng: &mut Rng, spread: f64) -> Vec<f64>;
 }

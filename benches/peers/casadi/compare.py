@@ -85,7 +85,7 @@ def print_table(results):
     print_row(f"{times.shape[1]} starts", (COLUMNS[name] for name in results), "")
     print_row("---", ["---"] * len(results), "")
     for name, values in zip(("lower quartile", "median", "upper quartile"), quartiles):
-        print_row(f"seconds a start, {name}", values, ".4f")
+        print_row(f"seconds per start, {name}", values, ".4f")
     print_row("median, in medians of `scp`", quartiles[1] / quartiles[1][0], ".1f")
     print_row(f"starts that end at J ≤ {BEST:.6f}", hits, "d")
     print_row("seconds for each of these", each_hit, ".3f")

@@ -112,7 +112,7 @@ def print_summary(results):
     with np.errstate(divide="ignore"):
         each_hit = {name: times[name].sum() / np.sum(hits[name]) for name in results}
     rows = [
-        ("seconds a start, median", "{:.3f}", lambda name: np.median(times[name])),
+        ("seconds per start, median", "{:.3f}", lambda name: np.median(times[name])),
         ("seconds, in those of `scp` from the same start: least", "{:.1f}",
          lambda name: np.min(quotients[name])),
         ("— median", "{:.1f}", lambda name: np.median(quotients[name])),

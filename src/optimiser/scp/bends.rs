@@ -33,31 +33,27 @@ impl Bends {
         }
     }
 
-    /// All of them, orthonormal.
-    fn orthonormal(&self) -> Vec<Bend> {
-        let mut all = self.told.clone().unwrap_or_default();
-        if let Some(tried) = &self.tried {
-            let Bend { mut direction, mut change } = tried.clone();
-            // Twice is enough for orthogonality to rounding.
-            for _ in 0..2 {
-                for bend in &all {
-                    let share = bend.direction.dot(&direction);
-                    direction -= &bend.direction * share;
-                    change -= &bend.change * share;
-                }
-            }
-            let new = direction.norm();
-            if new > NEW {
-                all.push(Bend { direction: direction / new, change: change / new });
+    /// What is new in the step last tried, if enough is.
+    fn new_in_tried(&self, told: &[Bend]) -> Option<Bend> {
+        let Bend { mut direction, mut change } = self.tried.clone()?;
+        // Twice is enough for orthogonality to rounding.
+        for _ in 0..2 {
+            for bend in told {
+                let share = bend.direction.dot(&direction);
+                direction -= &bend.direction * share;
+                change -= &bend.change * share;
             }
         }
-        all
+        let new = direction.norm();
+        (new > NEW).then(|| Bend { direction: direction / new, change: change / new })
     }
 
-    /// The second derivative of `ν · r` in the space of these directions, without what is negative (the Rayleigh–Ritz
-    /// method, Parlett 1998, doi:10.1137/1.9781611971163, chapter 11). Elsewhere nothing is known, and zero said.
+    /// The second derivative of `ν · r` in the space of all directions, without what is negative (the Rayleigh–Ritz
+    /// method, Parlett 1998, doi:10.1137/1.9781611971163, chapter 11). Elsewhere nothing is known, and the floor said.
     pub(super) fn curvature(&self, nu: &DVector<f64>) -> Curvature {
-        Curvature::of(&self.orthonormal(), nu)
+        let told = self.told.as_deref().unwrap_or_default();
+        let tried = self.new_in_tried(told);
+        Curvature::of(&told.iter().chain(&tried).collect::<Vec<_>>(), nu)
     }
 }
 
@@ -71,7 +67,7 @@ pub(super) struct Curvature {
 }
 
 impl Curvature {
-    fn of(bends: &[Bend], nu: &DVector<f64>) -> Self {
+    fn of(bends: &[&Bend], nu: &DVector<f64>) -> Self {
         let mut curvature = Self::default();
         if bends.is_empty() {
             return curvature;
@@ -87,7 +83,7 @@ impl Curvature {
             if *value > least {
                 let zero = DVector::zeros(bends[0].direction.len());
                 let parts = bends.iter().zip(shares.iter());
-                let sum = |sum: DVector<f64>, (bend, share): (&Bend, &f64)| {
+                let sum = |sum: DVector<f64>, (bend, share): (&&Bend, &f64)| {
                     sum + &bend.direction * *share
                 };
                 curvature.directions.push(parts.fold(zero, sum));

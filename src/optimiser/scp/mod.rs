@@ -170,8 +170,8 @@ impl Scp {
 
     /// Draws the start after `drawn` others: the problem's own, where it is timed, the first the narrowest.
     pub(super) fn random_start(oracle: &Oracle<'_>, rng: &mut Rng, drawn: usize) -> Vec<f64> {
-        let width = (drawn as f64 * GOLDEN).fract();
-        let own = oracle.timed_start(rng, width);
+        let spread = (drawn as f64 * GOLDEN).fract();
+        let own = oracle.timed_start(rng, spread);
         own.unwrap_or_else(|| Self::start(oracle.bounds(), rng))
     }
 

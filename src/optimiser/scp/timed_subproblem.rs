@@ -169,10 +169,10 @@ impl Model<'_> {
             let (border, e) = if limit.power == 0 { (1, 1.0) } else { (0, by_u) };
             let mut a = limit.slopes.map(|slope| slope / scale / unit);
             // What stands after the last variable is zero.
-            let after = limit.first.saturating_sub(self.x.len().saturating_sub(a.len()));
-            a.rotate_right(after.min(limit.first));
+            let first = limit.first.min(self.x.len().saturating_sub(a.len()));
+            a.rotate_right(limit.first - first);
             Row {
-                first: limit.first - after.min(limit.first),
+                first,
                 a,
                 border,
                 e: e / unit,
