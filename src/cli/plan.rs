@@ -57,7 +57,10 @@ pub(super) struct Plan {
 }
 
 /// Starts that `scp` follows over splines.
-const SPLINE_STARTS: usize = 4;
+const SPLINE_STARTS: usize = 24;
+
+/// Share of J that `scp` is content to miss there.
+const SPLINE_TOLERANCE: f64 = 1e-6;
 
 /// A residual above it is worth a warning.
 const GOAL_REACHED_DEG: f64 = 0.01;
@@ -164,9 +167,11 @@ impl Plan {
         let formulated = Formulated::free_form(Arc::new(problem)).map_err(refused)?;
         // Starts end alike more often than among sine polynomials, and each takes longer.
         let settings = match settings {
-            Settings::Scp(scp) => {
-                Settings::Scp(Scp { starts: NonZeroUsize::new(SPLINE_STARTS), ..scp.clone() })
-            }
+            Settings::Scp(scp) => Settings::Scp(Scp {
+                starts: NonZeroUsize::new(SPLINE_STARTS),
+                tolerance: SPLINE_TOLERANCE,
+                ..scp.clone()
+            }),
             other => other.clone(),
         };
         let found = self.search(&settings, formulated)?;
@@ -213,7 +218,7 @@ impl Plan {
         problem: Formulated<F>,
     ) -> Result<Found<F>, CliError> {
         let watch = watch();
-        let mut oracle = Oracle::new(&problem, self.budget, &watch);
+        let mut oracle = Oracle::new(&problem, self.budget, &watch).parallel();
         let started = Instant::now();
         let stop = {
             let _bar = Bar::new(self.budget, watch.clone());

@@ -16,7 +16,7 @@ const SINES: u32 = 3;
 
 /// The typical amplitude of the first, as a share of half a variable's box, of narrow and of wide starts: the narrow ones
 /// are near a fast motion, and where the base is weakly coupled to the arm only wide ones turn it far.
-const AMPLITUDES: [f64; 2] = [0.03, 0.3];
+const AMPLITUDES: [f64; 2] = [0.06, 0.4];
 
 /// Sines per joint along which the error's second derivative is asked for, and the length of the differences that it is
 /// made of.

@@ -109,6 +109,7 @@
 
 mod evaluation;
 mod failure;
+mod inner;
 mod oracle;
 mod points;
 mod problem;

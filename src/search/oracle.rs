@@ -83,25 +83,26 @@ pub struct TracePoint {
 /// Evaluates a problem for an optimiser within a budget.
 #[expect(missing_debug_implementations, reason = "a problem need not be printable")]
 pub struct Oracle<'a> {
-    problem: &'a dyn Problem,
+    pub(super) problem: &'a dyn Problem,
     /// The coarser problems down to the one that is asked, where it is not the problem itself.
-    coarser: Vec<&'a dyn Coarse>,
-    budget: u64,
-    watch: &'a Watch,
-    started: Instant,
-    in_problem: Duration,
-    evaluations: u64,
-    linearisations: u64,
-    curvatures: u64,
-    conic_solves: u64,
-    conic_failures: u64,
-    first_feasible: Option<u64>,
+    pub(super) coarser: Vec<&'a dyn Coarse>,
+    pub(super) budget: u64,
+    pub(super) watch: &'a Watch,
+    pub(super) started: Instant,
+    pub(super) in_problem: Duration,
+    pub(super) evaluations: u64,
+    pub(super) linearisations: u64,
+    pub(super) curvatures: u64,
+    pub(super) conic_solves: u64,
+    pub(super) conic_failures: u64,
+    pub(super) first_feasible: Option<u64>,
     /// Weights and shapes of the cost's terms, once they are known.
-    form: Option<Vec<(f64, Shape)>>,
-    best: Option<Best>,
+    pub(super) form: Option<Vec<(f64, Shape)>>,
+    pub(super) best: Option<Best>,
     /// The best of the search that is [`within`](Self::within), a point of the problem that is asked.
-    best_within: Option<Best>,
-    trace: Vec<TracePoint>,
+    pub(super) best_within: Option<Best>,
+    pub(super) trace: Vec<TracePoint>,
+    pub(super) is_parallel: bool,
 }
 
 impl<'a> Oracle<'a> {
@@ -124,7 +125,15 @@ impl<'a> Oracle<'a> {
             best: None,
             best_within: None,
             trace: Vec::new(),
+            is_parallel: false,
         }
+    }
+
+    /// Has searches that do not depend on one another run at the same time, on the threads of the current pool. What they
+    /// find does not depend on the number of threads.
+    #[must_use]
+    pub fn parallel(self) -> Self {
+        Self { is_parallel: true, ..self }
     }
 
     /// The problem's box.
@@ -333,55 +342,6 @@ impl<'a> Oracle<'a> {
         Ok(solution)
     }
 
-    /// Lets a search spend so many of the evaluations left, at most, and gives the best that it found.
-    /// Where only these are spent, and not the whole budget, that is no reason to stop.
-    pub fn within(
-        &mut self,
-        evaluations: u64,
-        search: impl FnOnce(&mut Self) -> Result<(), Stop>,
-    ) -> Result<Option<Best>, Stop> {
-        let (budget, outer) = (self.budget, self.best_within.take());
-        self.budget = budget.min(self.evaluations.saturating_add(evaluations));
-        let outcome = search(self);
-        self.budget = budget;
-        let own = std::mem::replace(&mut self.best_within, outer);
-        if let Some(own) = own.clone() {
-            self.add_to_search(own);
-        }
-        match outcome {
-            Err(stop) if stop != Stop::BudgetSpent || self.remaining() == 0 => Err(stop),
-            _ => Ok(own),
-        }
-    }
-
-    /// Has a search work on the [coarser](Problem::coarser) problem, where there is one, with the same budget. Its
-    /// evaluations count here; the best of its points, and those that it ends with, become points of this problem.
-    pub fn on_coarser(
-        &mut self,
-        search: impl FnOnce(&mut Self) -> Result<Vec<Best>, Stop>,
-    ) -> Result<Option<Vec<Best>>, Stop> {
-        let Some(coarse) = self.problem.coarser() else { return Ok(None) };
-        self.check_dimension(coarse.prolong(&vec![0.0; coarse.bounds().len()]).len())?;
-        let prolong = |best: Best| Best { x: coarse.prolong(&best.x), ..best };
-        let (problem, outer) = (self.problem, self.best_within.take());
-        self.problem = coarse;
-        self.coarser.push(coarse);
-        let outcome = search(self);
-        self.coarser.pop();
-        self.problem = problem;
-        if let Some(own) = std::mem::replace(&mut self.best_within, outer) {
-            self.add_to_search(prolong(own));
-        }
-        Ok(Some(outcome?.into_iter().map(prolong).collect()))
-    }
-
-    fn add_to_search(&mut self, found: Best) {
-        let is_better = |best: &Best| found.evaluation.cost < best.evaluation.cost;
-        if self.best_within.as_ref().is_none_or(is_better) {
-            self.best_within = Some(found);
-        }
-    }
-
     /// The improvements and, unless no cost was finite, the last evaluation, in order.
     pub fn into_trace(mut self) -> Vec<TracePoint> {
         if let (Some(last), Some(best)) = (self.trace.last(), &self.best)
@@ -396,7 +356,7 @@ impl<'a> Oracle<'a> {
         self.trace
     }
 
-    fn check(&self) -> Result<(), Stop> {
+    pub(super) fn check(&self) -> Result<(), Stop> {
         if self.watch.is_interrupted() {
             Err(Stop::Interrupted)
         } else if self.remaining() == 0 {
@@ -412,7 +372,7 @@ impl<'a> Oracle<'a> {
         self.problem.composite().ok_or(Stop::NoDerivatives)
     }
 
-    fn check_dimension(&self, found: usize) -> Result<(), Stop> {
+    pub(super) fn check_dimension(&self, found: usize) -> Result<(), Stop> {
         let expected = self.problem.bounds().len();
         if found == expected {
             return Ok(());

@@ -14,7 +14,7 @@ use crate::scalar::Scalar;
 const FIXED: usize = 3;
 
 /// The fewest pieces that a search begins with, where there are more.
-const COARSEST: usize = 16;
+const COARSEST: usize = 8;
 
 /// All splines of one degree over equal pieces between two configurations, at rest at both.
 ///

@@ -132,34 +132,40 @@ impl Scp {
         self.follow_random(random, oracle, rng).map(|_| ())
     }
 
-    /// Follows so many random starts on the coarsest problem, and on each finer one the best ends of the one before. Its own
-    /// best ends, each once.
+    /// Follows so many random starts a short way, on the coarsest problem, and on each finer one the best ends of the one
+    /// before. Its own best ends, each once.
     fn follow_random(
         &self,
         starts: usize,
         oracle: &mut Oracle<'_>,
         rng: &mut Rng,
     ) -> Result<Vec<Best>, Stop> {
-        let loose = Self { tolerance: self.tolerance.max(LOOSE), ..self.clone() };
-        let coarse = oracle.on_coarser(|oracle| loose.follow_random(starts, oracle, rng))?;
+        let is_timed = oracle.timed_weights().is_some();
+        let (loose, few) = if is_timed { (LOOSE, FEW) } else { (STRICT, self.steps) };
+        let short = Self {
+            tolerance: self.tolerance.max(loose),
+            steps: self.steps.min(few),
+            ..self.clone()
+        };
+        let mut ends = oracle.on_coarser(|oracle| short.follow_random(starts, oracle, rng))?;
+        if ends.is_none() && is_timed && self.tolerance < LOOSE {
+            ends = Some(short.follow_random(starts, oracle, rng)?);
+        }
         // Smaller weights than the problem's own would lead away from where an end has brought the norms.
         let onward = Self { first_weight: f64::INFINITY, ..self.clone() };
-        let (settings, followed) = match &coarse {
-            Some(ends) => (&onward, ends.len()),
-            None => (self, starts),
+        let (settings, points) = match ends {
+            Some(ends) => (&onward, ends.into_iter().map(|end| end.x).collect()),
+            None => (self, (0..starts).map(|k| Self::random_start(oracle, rng, k)).collect()),
         };
-        let mut ends = Vec::new();
-        for k in 0..followed {
-            let random = || Self::random_start(oracle, rng, k);
-            let start = coarse.as_ref().map_or_else(random, |ends| ends[k].x.clone());
-            let budget = oracle.remaining();
-            ends.extend(oracle.within(budget, |oracle| settings.follow(oracle, &start).map(drop))?);
-        }
+        let points: Vec<Vec<f64>> = points;
+        let mut ends =
+            oracle.from_each(&points, |oracle, x| settings.follow(oracle, x).map(drop))?;
         ends.sort_by(|a, b| a.evaluation.cost.total_cmp(&b.evaluation.cost));
+        let same = SAME.max(3.0 * self.tolerance);
         ends.dedup_by(|b, a| {
-            b.evaluation.cost - a.evaluation.cost <= SAME * a.evaluation.cost.abs()
+            b.evaluation.cost - a.evaluation.cost <= same * a.evaluation.cost.abs()
         });
-        ends.truncate(followed.div_ceil(REDUCTION));
+        ends.truncate(points.len().div_ceil(REDUCTION));
         Ok(ends)
     }
 
@@ -237,10 +243,12 @@ fn next_radius(radius: f64, kept: f64, reach: f64) -> f64 {
 const GROWTH: f64 = 10.0;
 
 /// Of the starts on one level, one in so many goes on to the next finer one.
-const REDUCTION: usize = 4;
+const REDUCTION: usize = 3;
 
-/// The tolerance of coarser problems, whose ends are starts only.
-const LOOSE: f64 = 1e-5;
+/// Tolerance and most steps where ends are starts only. Where steps are few and each takes long, a rough end tells enough.
+const STRICT: f64 = 1e-5;
+const LOOSE: f64 = 1e-3;
+const FEW: NonZeroUsize = NonZeroUsize::new(40).unwrap();
 
 /// Ends whose costs differ by less than this share are one.
 const SAME: f64 = 1e-5;

@@ -15,6 +15,10 @@ use super::timed_subproblem::{Cuts, Model, Solution};
 use super::{Ending, SMALLEST, Scp, TAKE, WIDEN, next_radius};
 use crate::search::{ErrorSlopes, LinearLimits, Oracle, Stop, TimedWeights};
 
+/// Share of the settings' first weight that the error's weight begins with: it grows where it has to, step by step, and a
+/// larger one leads into poor valleys more often.
+const START: f64 = 0.5;
+
 /// A step that would leave more of the error than this share of it calls for a larger weight.
 const LEFT: f64 = 0.9;
 
@@ -56,7 +60,7 @@ impl<'a, 'b> Search<'a, 'b> {
         start: &[f64],
     ) -> Result<Self, Stop> {
         let here = oracle.timing(start)?;
-        let first = settings.first_weight * weights.time * here.0.time;
+        let first = START * settings.first_weight * weights.time * here.0.time;
         Ok(Self {
             weight: if first > 0.0 { weights.error.min(first) } else { weights.error },
             falls: 0,
