@@ -20,6 +20,7 @@ mod check;
 mod compact;
 #[cfg(feature = "harness")]
 mod export;
+mod found;
 mod list;
 mod motion;
 mod plan;

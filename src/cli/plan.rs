@@ -6,20 +6,20 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
-use serde::Serialize;
 use toml::Spanned;
 
-use super::motion::{AssessmentJson, MotionFiles, ShapeJson, Told};
+use super::found::{Found, OtherFamily, Spent};
+use super::motion::MotionFiles;
 use super::progress::Bar;
 use super::{CliError, read_or, shown, warn_of, watch};
 use crate::input::{InputError, nearest};
 use crate::optimiser::{Scp, Settings};
 use crate::reorientation::{
-    Accuracy, Assessment, BestKnown, FamilyName, FamilySpec, Formulated, Formulation,
-    Reorientation, SearchedFamily, TaskFile, TaskProblem, TrajectoryTable,
+    Accuracy, BestKnown, FamilyName, FamilySpec, Formulated, Formulation, Reach, Reorientation,
+    SearchedFamily, TaskFile, TaskProblem, TrajectoryTable,
 };
 use crate::search::{BoundsError, Oracle, Rng, Stop};
-use crate::task::TaskTable;
+use crate::task::{Task, TaskTable};
 use crate::trajectory::{Family, Spline};
 
 /// Find the best motion for one task
@@ -62,41 +62,15 @@ const SPLINE_STARTS: usize = 24;
 /// Share of J that `scp` is content to miss there.
 const SPLINE_TOLERANCE: f64 = 1e-6;
 
-/// A residual above it is worth a warning.
-const GOAL_REACHED_DEG: f64 = 0.01;
+/// Pieces of a spline where neither file nor options say.
+const PIECES: usize = 80;
 
-#[derive(Debug, Serialize)]
-struct PlanJson<'a> {
-    task: String,
-    optimiser: &'a str,
-    seed: u64,
-    #[serde(flatten)]
-    family: FamilySpec,
-    best_known_j: Option<f64>,
-    #[serde(flatten)]
-    assessment: AssessmentJson,
-    #[serde(flatten)]
-    shape: ShapeJson,
-    evaluations: u64,
-    linearisations: u64,
-    curvatures: u64,
-    conic_solves: u64,
-    lanes: usize,
-    seconds: f64,
-}
+/// How often more starts are followed where no motion reaches the goal, and by how much less time weighs each time.
+const MORE_ROUNDS: u64 = 2;
+const LESS_TIME: f64 = 100.0;
 
-/// What the search came to.
-struct Found<F: Family> {
-    problem: Formulated<F>,
-    coefficients: Vec<f64>,
-    assessment: Assessment,
-    evaluations: u64,
-    linearisations: u64,
-    curvatures: u64,
-    conic_solves: u64,
-    seconds: f64,
-    interrupted: bool,
-}
+/// Starts among the paper's family, to compare.
+const OTHER_STARTS: usize = 20;
 
 impl Plan {
     pub(super) fn execute(self) -> Result<(), CliError> {
@@ -104,33 +78,40 @@ impl Plan {
         let settings = find_optimiser(&self.optimiser)?;
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;
         let TaskFile { task, trajectory } = TaskFile::read(&document)?;
+        let is_named = self.family.is_some() || trajectory.states_family();
         let file = TaskFile { trajectory: self.over(trajectory), task };
         self.check_options(file.trajectory.family())?;
         let refused = |error| document.error_at(0..0, error, None);
-        let (problem, boxes) = match file.problem(&document)? {
-            TaskProblem::Spline(problem, _) => {
-                return self.plan_spline(&settings, problem, file.task, refused);
+        match file.problem(&document)? {
+            TaskProblem::SinePolynomial(problem, boxes) => {
+                warn_of(&problem.task().robot);
+                // Default settings name no formulation.
+                let formulation =
+                    Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree);
+                let formulated =
+                    Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
+                let found = self.search(&settings, formulated, self.seed, self.budget)?;
+                self.finish(&found, None, file.task)
             }
-            TaskProblem::SinePolynomial(problem, boxes) => (problem, boxes),
-        };
-        warn_of(&problem.task().robot);
-        // Default settings name no formulation.
-        let formulation =
-            Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree);
-        let formulated =
-            Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
-        let found = self.search(&settings, formulated)?;
-        self.report(&found)?;
-        warn_of_residual(
-            &found.assessment,
-            "`--family spline`, more terms, another optimiser, such as a hybrid, a larger budget or a larger",
-        );
-        self.say_entry(&found, file.task);
-        self.finish(&found)
+            TaskProblem::Spline(problem, _) => {
+                warn_of(&problem.task().robot);
+                let found = self.search_splines(&settings, problem, refused)?;
+                let other = if is_named || found.interrupted {
+                    None
+                } else {
+                    let table = file.trajectory.with_family(FamilyName::SinePolynomial);
+                    self.search_other(table.build(found.problem.task().task().clone(), &document)?)
+                };
+                self.finish(&found, other, file.task)
+            }
+        }
     }
 
     /// What a file says of the family, with what the command line says instead.
     fn over(&self, mut table: TrajectoryTable) -> TrajectoryTable {
+        if !table.states_family() {
+            table = table.with_family(FamilyName::Spline).with_pieces(Spanned::new(0..0, PIECES));
+        }
         if let Some(family) = self.family {
             table = table.with_family(family);
         }
@@ -155,17 +136,13 @@ impl Plan {
         }
     }
 
-    /// The same over splines.
-    fn plan_spline(
+    /// Searches splines; where none reaches the goal and one may, again from other starts and with the goal weighing more.
+    fn search_splines(
         &self,
         settings: &Settings,
         problem: Reorientation<Spline>,
-        task: TaskTable,
         refused: impl Fn(BoundsError) -> InputError,
-    ) -> Result<(), CliError> {
-        warn_of(&problem.task().robot);
-        let formulated = Formulated::free_form(Arc::new(problem)).map_err(refused)?;
-        // Starts end alike more often than among sine polynomials, and each takes longer.
+    ) -> Result<Found<Spline>, CliError> {
         let settings = match settings {
             Settings::Scp(scp) => Settings::Scp(Scp {
                 starts: NonZeroUsize::new(SPLINE_STARTS),
@@ -174,37 +151,54 @@ impl Plan {
             }),
             other => other.clone(),
         };
-        let found = self.search(&settings, formulated)?;
-        self.report(&found)?;
-        warn_of_residual(&found.assessment, "another `--seed`, more `--pieces` or a larger");
-        self.say_entry(&found, task);
-        self.finish(&found)
+        let own = Formulated::free_form(Arc::new(problem.clone())).map_err(&refused)?;
+        let mut found = self.search(&settings, own, self.seed, self.budget)?;
+        let mut time_weight = 1.0 - problem.task().base_weight;
+        for round in 1..=MORE_ROUNDS {
+            let left = self.budget - found.spent.evaluations;
+            if found.reach != Reach::NotFound || found.interrupted || left == 0 {
+                break;
+            }
+            time_weight /= LESS_TIME;
+            let task = Task { base_weight: 1.0 - time_weight, ..(**problem.task()).clone() };
+            let (family, accuracy) = (problem.family().clone(), problem.accuracy());
+            let demanding = Reorientation::over(Arc::new(task), family, accuracy);
+            let formulated = Formulated::free_form(Arc::new(demanding)).map_err(&refused)?;
+            let again = self.search(&settings, formulated, self.seed.wrapping_add(round), left)?;
+            found = found.or(again);
+        }
+        Ok(found)
     }
 
-    /// Says what was found, as JSON or to people.
-    fn report<F: SearchedFamily>(&self, found: &Found<F>) -> Result<(), CliError> {
+    /// What the paper's family comes to, if it comes to anything.
+    fn search_other(&self, problem: TaskProblem) -> Option<OtherFamily> {
+        let TaskProblem::SinePolynomial(problem, boxes) = problem else { return None };
+        let terms = problem.family().terms();
+        let formulated = Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes).ok()?;
+        let scp = Scp { starts: NonZeroUsize::new(OTHER_STARTS), ..Scp::default() };
+        let found = self.search(&Settings::Scp(scp), formulated, self.seed, self.budget).ok()?;
+        (!found.interrupted).then(|| OtherFamily::new(terms, &found))
+    }
+
+    /// Says what was found, as JSON or to people, and writes the files that were asked for.
+    fn finish<F: SearchedFamily>(
+        &self,
+        found: &Found<F>,
+        other: Option<OtherFamily>,
+        task: TaskTable,
+    ) -> Result<(), CliError> {
         let known = BestKnown::of(found.problem.task());
         if self.json {
-            say!("{}", self.json(found, known));
-            return Ok(());
+            let task = shown(self.file.as_ref(), "xiao2023");
+            let json = found.json(task, &self.optimiser, self.seed, known, other);
+            say!("{}", serde_json::to_string_pretty(&json).unwrap_or_default());
+        } else {
+            let file = shown(self.file.as_ref(), "the paper's task");
+            say!("{file} by {}, seed {}", self.optimiser, self.seed);
+            say!("{}", found.told(known, other));
         }
-        let told = Told { task: found.problem.task().task(), assessment: &found.assessment };
-        say!(
-            "{} by {}, seed {}",
-            shown(self.file.as_ref(), "the paper's task"),
-            self.optimiser,
-            self.seed
-        );
-        say!("{told}");
-        if let Some(known) = known {
-            say!("  this J         {}", known.compared_with(found.assessment.cost));
-        }
-        say!("  {} evaluations in {:.2} s", found.evaluations, found.seconds);
-        Ok(())
-    }
-
-    /// Writes the files that were asked for.
-    fn finish<F: SearchedFamily>(&self, found: &Found<F>) -> Result<(), CliError> {
+        found.warn();
+        self.say_entry(found, task);
         self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
         if found.interrupted {
             return Err(CliError::Interrupted("this is the best motion so far".to_owned()));
@@ -216,13 +210,15 @@ impl Plan {
         &self,
         settings: &Settings,
         problem: Formulated<F>,
+        seed: u64,
+        budget: u64,
     ) -> Result<Found<F>, CliError> {
         let watch = watch();
-        let mut oracle = Oracle::new(&problem, self.budget, &watch).parallel();
+        let mut oracle = Oracle::new(&problem, budget, &watch).parallel();
         let started = Instant::now();
         let stop = {
-            let _bar = Bar::new(self.budget, watch.clone());
-            settings.optimiser().minimise(&mut oracle, &mut Rng::new(self.seed))
+            let _bar = Bar::new(budget, watch.clone());
+            settings.optimiser().minimise(&mut oracle, &mut Rng::new(seed))
         };
         let seconds = started.elapsed().as_secs_f64();
         let interrupted = stop == Err(Stop::Interrupted);
@@ -237,17 +233,15 @@ impl Plan {
             });
         };
         let (coefficients, assessment) = problem.certify(&best.x);
-        Ok(Found {
-            coefficients,
-            assessment,
+        let spent = Spent {
             evaluations: oracle.evaluations(),
             linearisations: oracle.linearisations(),
             curvatures: oracle.curvatures(),
             conic_solves: oracle.conic_solves(),
             seconds,
-            interrupted,
-            problem,
-        })
+        };
+        let reach = Reach::of(problem.task().task(), &assessment);
+        Ok(Found { problem, coefficients, assessment, reach, spent, interrupted })
     }
 
     /// Says how the motion stands in the file of the best known: where it should, or was asked to.
@@ -274,36 +268,6 @@ impl Plan {
             let entry = BestKnown::new(problem, task, coefficients, assessment, found_by);
             note!("the entry for results/best-known.toml:\n\n{entry}");
         }
-    }
-
-    fn json<F: SearchedFamily>(&self, found: &Found<F>, known: Option<&BestKnown>) -> String {
-        let (problem, duration) = (found.problem.task(), found.assessment.duration);
-        let json = PlanJson {
-            task: shown(self.file.as_ref(), "xiao2023"),
-            optimiser: &self.optimiser,
-            seed: self.seed,
-            family: problem.family().spec(),
-            best_known_j: known.map(|known| known.j),
-            assessment: (&found.assessment).into(),
-            shape: ShapeJson::new(problem, &found.coefficients, duration),
-            evaluations: found.evaluations,
-            linearisations: found.linearisations,
-            curvatures: found.curvatures,
-            conic_solves: found.conic_solves,
-            lanes: problem.width().lanes(),
-            seconds: found.seconds,
-        };
-        serde_json::to_string_pretty(&json).unwrap_or_default()
-    }
-}
-
-/// Warns where the goal is missed; `advice` comes before the weight.
-fn warn_of_residual(assessment: &Assessment, advice: &str) {
-    let residual = assessment.residual().to_degrees();
-    if residual > GOAL_REACHED_DEG {
-        note!(
-            "warning: the base ends {residual:.3}° from its goal; {advice} `weights.base` may bring it there"
-        );
     }
 }
 

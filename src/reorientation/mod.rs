@@ -23,6 +23,7 @@ mod motion;
 #[cfg(feature = "harness")]
 mod poses;
 mod published;
+mod reach;
 mod settings;
 mod spline_box;
 #[cfg(feature = "harness")]
@@ -50,6 +51,7 @@ pub use kind::ReorientationTask;
 pub use measure::Workspace;
 pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};
+pub use reach::{Block, Reach};
 pub use settings::{Boxes, TaskFile, TaskProblem, TrajectoryTable};
 pub use spline_box::SplineBox;
 #[cfg(feature = "harness")]

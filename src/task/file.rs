@@ -8,9 +8,14 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::{PoseTable, Posture, PostureParts, Task};
-use crate::input::{Document, Finite, InputError, PerJoint, finite_array, fraction, nearest};
+use crate::input::{
+    Document, Finite, InputError, PerJoint, Positive, finite_array, fraction, nearest,
+};
 use crate::robot::Robot;
 use crate::trajectory::Limits;
+
+/// How far from its goal the base may end where a file says nothing of it.
+const TOLERANCE_DEG: f64 = 0.001;
 
 /// The `[task]` table.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -29,6 +34,8 @@ struct PostureTable {
     joints_deg: Spanned<Vec<Finite>>,
     #[serde(deserialize_with = "finite_array")]
     base_zyx_deg: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tolerance_deg: Option<Spanned<Positive>>,
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -83,12 +90,18 @@ impl TaskTable {
             reader.limit(&self.limits.acceleration_deg_s2)?,
             reader.limit(&self.limits.jerk_deg_s3)?,
         ];
+        if let Some(tolerance) = &self.start.tolerance_deg {
+            let message = "found `tolerance_deg`, which is for the goal alone";
+            return Err(document.error_at(tolerance.span(), message, None));
+        }
+        let tolerance = self.goal.tolerance_deg.as_ref().map_or(TOLERANCE_DEG, |t| t.get_ref().0);
         let limits = (0..robot.joint_count()).map(|i| [rate[i], acceleration[i], jerk[i]]);
         Ok(Task {
             start: reader.posture(&self.start)?,
             goal: reader.posture(&self.goal)?,
             limits: Limits(limits.collect()),
             base_weight: self.weights.base,
+            goal_tolerance: tolerance.to_radians(),
             robot: Arc::new(robot),
         })
     }
@@ -97,12 +110,13 @@ impl TaskTable {
 impl PostureTable {
     /// The same posture but for some parts.
     fn with(&self, parts: &PostureParts) -> Self {
-        let Self { joints_deg, base_zyx_deg } = self;
+        let Self { joints_deg, base_zyx_deg, tolerance_deg } = self;
         Self {
             joints_deg: parts.joints_deg.as_ref().unwrap_or(joints_deg).clone(),
             base_zyx_deg: parts
                 .base_zyx_deg
                 .map_or(*base_zyx_deg, |base| base.map(|angle| angle.0)),
+            tolerance_deg: tolerance_deg.clone(),
         }
     }
 }

@@ -1,0 +1,185 @@
+//! What `plan` found.
+
+use std::fmt::{self, Write as _};
+
+use serde::Serialize;
+
+use super::motion::{AssessmentJson, ShapeJson, Told};
+use crate::reorientation::{
+    Assessment, BestKnown, Block, FamilyName, FamilySpec, Formulated, Reach, SearchedFamily,
+};
+use crate::trajectory::{Family, SinePolynomial};
+
+/// What a search spent.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(super) struct Spent {
+    pub(super) evaluations: u64,
+    pub(super) linearisations: u64,
+    pub(super) curvatures: u64,
+    pub(super) conic_solves: u64,
+    pub(super) seconds: f64,
+}
+
+/// What the search came to.
+pub(super) struct Found<F: Family> {
+    pub(super) problem: Formulated<F>,
+    pub(super) coefficients: Vec<f64>,
+    pub(super) assessment: Assessment,
+    pub(super) reach: Reach,
+    pub(super) spent: Spent,
+    pub(super) interrupted: bool,
+}
+
+/// The best motion of the paper's family.
+#[derive(Debug, Serialize)]
+pub(super) struct OtherFamily {
+    terms: usize,
+    t_f: f64,
+    residual_deg: f64,
+    status: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct PlanJson<'a> {
+    task: String,
+    optimiser: &'a str,
+    seed: u64,
+    #[serde(flatten)]
+    family: FamilySpec,
+    status: &'static str,
+    tolerance_deg: f64,
+    least_time: Option<f64>,
+    best_known_j: Option<f64>,
+    #[serde(flatten)]
+    assessment: AssessmentJson,
+    #[serde(flatten)]
+    shape: ShapeJson,
+    sine_polynomial: Option<OtherFamily>,
+    #[serde(flatten)]
+    spent: Spent,
+    lanes: usize,
+}
+
+impl OtherFamily {
+    pub(super) fn new(terms: usize, found: &Found<SinePolynomial>) -> Self {
+        Self {
+            terms,
+            t_f: found.assessment.duration,
+            residual_deg: found.assessment.residual().to_degrees(),
+            status: found.reach.name(),
+        }
+    }
+}
+
+impl fmt::Display for OtherFamily {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { terms, t_f, residual_deg, status } = self;
+        write!(f, "sine polynomials with {terms} terms: {t_f:.6} s")?;
+        if *status == Reach::Reached.name() {
+            Ok(())
+        } else {
+            write!(f, ", {residual_deg:.3}° off")
+        }
+    }
+}
+
+impl<F: SearchedFamily> Found<F> {
+    /// The one that ends nearer to the goal, unless both reach it; has spent what both have.
+    pub(super) fn or(self, other: Self) -> Self {
+        let [own, more] = [self.spent, other.spent];
+        let spent = Spent {
+            evaluations: own.evaluations + more.evaluations,
+            linearisations: own.linearisations + more.linearisations,
+            curvatures: own.curvatures + more.curvatures,
+            conic_solves: own.conic_solves + more.conic_solves,
+            seconds: own.seconds + more.seconds,
+        };
+        let interrupted = self.interrupted || other.interrupted;
+        let is_nearer = other.assessment.residual() < self.assessment.residual();
+        let found = if is_nearer { other } else { self };
+        Self { spent, interrupted, ..found }
+    }
+
+    pub(super) fn json<'a>(
+        &self,
+        task: String,
+        optimiser: &'a str,
+        seed: u64,
+        known: Option<&BestKnown>,
+        other: Option<OtherFamily>,
+    ) -> PlanJson<'a> {
+        let problem = self.problem.task();
+        PlanJson {
+            task,
+            optimiser,
+            seed,
+            family: problem.family().spec(),
+            status: self.reach.name(),
+            tolerance_deg: problem.task().goal_tolerance.to_degrees(),
+            least_time: self.reach.least_time(),
+            best_known_j: known.map(|known| known.j),
+            assessment: (&self.assessment).into(),
+            shape: ShapeJson::new(problem, &self.coefficients, self.assessment.duration),
+            sine_polynomial: other,
+            spent: self.spent,
+            lanes: problem.width().lanes(),
+        }
+    }
+
+    /// For people.
+    pub(super) fn told(&self, known: Option<&BestKnown>, other: Option<OtherFamily>) -> String {
+        let task = self.problem.task().task();
+        let mut text = match self.problem.task().family().spec() {
+            FamilySpec::SinePolynomial { terms } => {
+                format!("  family         sine polynomials with {terms} terms\n")
+            }
+            FamilySpec::Spline { pieces, degree } => {
+                format!("  family         splines of degree {degree} with {pieces} pieces\n")
+            }
+        };
+        let _ = writeln!(text, "{}", Told { task, assessment: &self.assessment });
+        if let Some(known) = known {
+            let _ =
+                writeln!(text, "  this J         {}", known.compared_with(self.assessment.cost));
+        }
+        if let Some(other) = other {
+            let _ = writeln!(text, "  in comparison  {other}");
+        }
+        let Spent { evaluations, seconds, .. } = self.spent;
+        let _ = write!(text, "  {evaluations} evaluations in {seconds:.2} s");
+        text
+    }
+
+    /// Warns where the goal is missed.
+    pub(super) fn warn(&self) {
+        let task = self.problem.task();
+        let why = match self.reach {
+            Reach::Reached => return,
+            Reach::Blocked(Block::NoTurn) => {
+                "and no motion brings it nearer: the joints do not turn the base".to_owned()
+            }
+            Reach::Blocked(Block::OneJoint) => {
+                "and no motion brings it nearer: with one joint, where the base ends follows from where the joint ends"
+                    .to_owned()
+            }
+            Reach::Blocked(Block::OneAxis) => {
+                "and no motion reaches it: all joints turn the base about the same axis, and the goal is a turn about another"
+                    .to_owned()
+            }
+            Reach::TooSlow(seconds) => format!(
+                "which cannot be reached within {seconds:.0} s: joints at their largest rates do not turn the base faster"
+            ),
+            Reach::NotFound => {
+                let advice = match task.family().spec().name() {
+                    FamilyName::Spline => "another `--seed` or more `--pieces` may find one",
+                    FamilyName::SinePolynomial => {
+                        "`--family spline`, more terms or another optimiser, such as a hybrid, may find one"
+                    }
+                };
+                format!("and no motion was found that reaches it; {advice}")
+            }
+        };
+        let residual = self.assessment.residual().to_degrees();
+        note!("warning: the base ends {residual:.3}° from its goal, {why}");
+    }
+}
