@@ -28,13 +28,15 @@ pub(super) struct Plan {
     /// Task file; without one, the paper's task
     #[arg(value_name = "TASK.toml")]
     file: Option<PathBuf>,
-    /// Optimiser, with its default settings; `driftless list` shows them
+    /// Optimiser, with its default settings; `driftless list` shows them. Others than `scp` search sine polynomials, of few
+    /// variables, unless told otherwise
     #[arg(long, value_name = "NAME", default_value = "scp")]
     optimiser: String,
-    /// Family of motions, instead of the file's: splines are faster than sine polynomials and reach more goals
+    /// Family of motions, instead of the file's: splines are faster than sine polynomials and reach more goals, and are the
+    /// choice of `scp` where neither says
     #[arg(long, value_name = "NAME")]
     family: Option<FamilyName>,
-    /// Pieces of a spline, instead of the file's or 40
+    /// Pieces of a spline, instead of the file's; 80 where neither file nor options name splines
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(4..=1000))]
     pieces: Option<u16>,
     /// Degree of a spline, instead of the file's or 4: 3 has a constant jerk on each piece, 4 a continuous one, 5 a smooth one
@@ -79,7 +81,7 @@ impl Plan {
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;
         let TaskFile { task, trajectory } = TaskFile::read(&document)?;
         let is_named = self.family.is_some() || trajectory.states_family();
-        let file = TaskFile { trajectory: self.over(trajectory), task };
+        let file = TaskFile { trajectory: self.over(trajectory, &settings), task };
         self.check_options(file.trajectory.family())?;
         let refused = |error| document.error_at(0..0, error, None);
         match file.problem(&document)? {
@@ -108,8 +110,11 @@ impl Plan {
     }
 
     /// What a file says of the family, with what the command line says instead.
-    fn over(&self, mut table: TrajectoryTable) -> TrajectoryTable {
-        if !table.states_family() {
+    fn over(&self, mut table: TrajectoryTable, settings: &Settings) -> TrajectoryTable {
+        // Other optimisers get nowhere among hundreds of variables.
+        let is_spline =
+            matches!(settings, Settings::Scp(_)) || self.pieces.is_some() || self.degree.is_some();
+        if !table.states_family() && is_spline {
             table = table.with_family(FamilyName::Spline).with_pieces(Spanned::new(0..0, PIECES));
         }
         if let Some(family) = self.family {

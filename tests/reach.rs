@@ -1,0 +1,73 @@
+//! What is said of goals that a motion misses.
+
+use std::sync::Arc;
+
+use driftless::input::Document;
+use driftless::reorientation::{Accuracy, Block, Reach, Reorientation, TaskFile};
+use driftless::robot::Robot;
+use driftless::task::Task;
+use nalgebra::UnitQuaternion;
+
+/// The paper's start and goal for the first joints of an arm whose axes are all parallel to the base's z axis, on a base
+/// of so many times the inertia, which ends turned by yaw, pitch and roll \[rad\].
+fn planar(joints: usize, times: f64, [yaw, pitch, roll]: [f64; 3]) -> Task {
+    let base = format!(
+        "name = 'planar'\n[base]\nmass = {}\nmount = [0.5, 0, 0]\ninertia = {{ xx = {i}, yy = {i}, zz = {i} }}\n",
+        100.0 * times,
+        i = 10.0 * times,
+    );
+    let joint = "[[joint]]\ndh = { d = 0, a = 0.5, alpha_deg = 0 }\nrange_deg = [-180, 180]\nmass = 5\n\
+        centre_of_mass = [-0.25, 0, 0]\ninertia = { xx = 0.1, yy = 0.2, zz = 0.2 }\n";
+    let text = base + &joint.repeat(joints);
+    let robot = Robot::from_document(&Document::embedded("planar", &text)).unwrap();
+    let document = TaskFile::paper();
+    let (paper, _) = TaskFile::read(&document).unwrap().build(&document).unwrap();
+    let mut task = (**paper.task()).clone();
+    task.robot = Arc::new(robot);
+    task.limits.0.truncate(joints);
+    task.start.joints.truncate(joints);
+    task.goal.joints.truncate(joints);
+    task.start.base = UnitQuaternion::identity();
+    task.goal.base = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
+    task
+}
+
+/// What is said of the straight motion, and how long that takes \[s\].
+fn of_straight(task: &Task) -> (Reach, f64) {
+    let problem = Reorientation::new(Arc::new(task.clone()), 2, Accuracy::FINE);
+    let coefficients = vec![0.0; 2 * task.robot.joint_count()];
+    let motion = problem.assess(&coefficients, None);
+    (Reach::of(task, &motion), motion.duration)
+}
+
+#[test]
+fn a_planar_arm_turns_the_base_about_one_axis() {
+    assert_eq!(of_straight(&planar(3, 1.0, [0.3, 0.0, 0.0])).0, Reach::NotFound);
+    assert_eq!(of_straight(&planar(3, 1.0, [0.3, 0.1, 0.0])).0, Reach::Blocked(Block::OneAxis));
+    assert_eq!(of_straight(&planar(3, 1.0, [0.0, 0.0, 1e-3])).0, Reach::Blocked(Block::OneAxis));
+    assert_eq!(of_straight(&planar(1, 1.0, [0.3, 0.0, 0.0])).0, Reach::Blocked(Block::OneJoint));
+}
+
+/// A tolerance as wide as the error takes the goal as reached, and one that takes in the tilt leaves the turn to be found.
+#[test]
+fn tolerances_widen_the_goal() {
+    let wide = |task: Task, goal_tolerance: f64| of_straight(&Task { goal_tolerance, ..task }).0;
+    assert_eq!(wide(planar(3, 1.0, [0.3, 0.1, 0.0]), 3.0), Reach::Reached);
+    assert_eq!(wide(planar(3, 1.0, [0.9, 1e-3, 0.0]), 2e-3), Reach::NotFound);
+}
+
+/// A base of a million times the inertia turns a million times as slowly. Momentum bounds the rate: all links lie within
+/// 2 m of the base's centre of mass, so they have about it an inertia of at most 15 kg (2 m)² + 0.6 kg m², and turn by 180°/s
+/// at most, 60°/s from each joint.
+#[test]
+fn a_heavy_base_takes_long() {
+    let task = planar(3, 1e6, [0.3, 0.0, 0.0]);
+    let (reach, duration) = of_straight(&task);
+    let Reach::TooSlow(least) = reach else { panic!("{reach:?} after {duration} s") };
+    let momentum = (15.0 * 2.0 * 2.0 + 0.6) * f64::to_radians(180.0);
+    assert!(least > 0.3 / (momentum / 1e7), "{least} s");
+    let (Reach::TooSlow(twice), _) = of_straight(&planar(3, 2e6, [0.3, 0.0, 0.0])) else {
+        panic!("a heavier base turns more slowly")
+    };
+    assert!((twice / least - 2.0).abs() < 1e-4, "{twice} s and {least} s");
+}
