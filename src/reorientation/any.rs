@@ -4,11 +4,11 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use super::accuracy::Accuracy;
+use super::boxes::Boxes;
 use super::family::FamilySpec;
 use super::fitness::{Assessment, Reorientation};
 use super::formulation::{Formulated, Formulation};
 use super::motion::Motion;
-use super::settings::Boxes;
 use super::spline_box::SplineBox;
 use crate::lanes::Width;
 use crate::search::Failure;

@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::accuracy::Accuracy;
+use super::boxes::Boxes;
 use super::fitness::{Assessment, Reorientation};
 use super::measure::Workspace;
-use super::settings::Boxes;
 use super::spline_box::SplineBox;
 use crate::search::{
     Bounds, BoundsError, Coarse, Composite, Differentiable, Evaluation, Failure, Linearisation,
@@ -141,6 +141,11 @@ impl<F: Family> Formulated<F> {
     /// The task behind the formulation.
     pub fn task(&self) -> &Reorientation<F> {
         &self.task
+    }
+
+    /// What stands in an optimiser's variables.
+    pub fn formulation(&self) -> Formulation {
+        self.formulation
     }
 
     /// Coefficients and, where it is a variable, duration \[s\] of a point.

@@ -5,6 +5,7 @@ mod any;
 #[cfg(feature = "harness")]
 mod bases;
 mod best_known;
+mod boxes;
 mod derivatives;
 #[cfg(feature = "harness")]
 mod exhibits;
@@ -38,6 +39,7 @@ mod timed;
 pub use accuracy::Accuracy;
 pub use any::{AnyReorientation, SearchedFamily};
 pub use best_known::{BestKnown, fingerprint};
+pub use boxes::Boxes;
 #[cfg(all(feature = "cli", feature = "harness"))]
 pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]
@@ -52,7 +54,7 @@ pub use measure::Workspace;
 pub use motion::{JointMotion, Motion};
 pub use published::{Published, Reading, ReplayFile};
 pub use reach::{Block, Reach};
-pub use settings::{Boxes, TaskFile, TaskProblem, TrajectoryTable};
+pub use settings::{TaskFile, TaskProblem, TrajectoryTable};
 pub use spline_box::SplineBox;
 #[cfg(feature = "harness")]
 pub use subject::TaskSubject;

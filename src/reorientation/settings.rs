@@ -8,12 +8,13 @@ use serde::{Deserialize, Serialize, Serializer};
 use toml::Spanned;
 
 use super::accuracy::Accuracy;
+use super::boxes::{BoxTable, Boxes, COARSE, Duration};
 use super::family::FamilyName;
 use super::fitness::Reorientation;
 use super::spline_box::SplineBox;
-use crate::input::{Document, InputError, Positive, count, positive_interval};
+use crate::input::{Document, InputError, optional_count};
 use crate::task::{Task, TaskTable};
-use crate::trajectory::{Limits, Peaks, SinePolynomial, Spline};
+use crate::trajectory::Spline;
 
 /// The paper's task and the default settings.
 pub(super) const DEFAULTS: &str = include_str!("defaults.toml");
@@ -37,7 +38,7 @@ pub struct TaskFile {
     pub trajectory: TrajectoryTable,
 }
 
-/// The `[trajectory]` table. Every key has a value; those of other families than its own matter where a sweep names them.
+/// The `[trajectory]` table. Sizes of all families have values; those of other families than its own matter where a sweep names them.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 pub struct TrajectoryTable {
@@ -50,13 +51,13 @@ pub struct TrajectoryTable {
     /// Degree of a spline.
     degree: Spanned<usize>,
     /// Magnus steps along the path during a search.
-    #[serde(deserialize_with = "count::<10_000, _, _>")]
-    attitude_steps: NonZeroUsize,
+    #[serde(default, deserialize_with = "optional_count::<1, 10_000, _, _>")]
+    attitude_steps: Option<NonZeroUsize>,
     /// Intervals in which peaks are bracketed during a search.
-    #[serde(deserialize_with = "count::<100_000, _, _>")]
-    peak_intervals: NonZeroUsize,
+    #[serde(default, deserialize_with = "optional_count::<1, 100_000, _, _>")]
+    peak_intervals: Option<NonZeroUsize>,
     /// Where to search.
-    #[serde(rename = "box")]
+    #[serde(rename = "box", default)]
     boxes: BoxTable,
     /// The families of a sweep; empty for the table's own.
     #[serde(skip)]
@@ -73,18 +74,12 @@ struct WrittenTrajectory<'a> {
     pieces: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     degree: Option<usize>,
-    attitude_steps: NonZeroUsize,
-    peak_intervals: NonZeroUsize,
-    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
-    boxes: Option<WrittenBox<'a>>,
-}
-
-/// A `[trajectory.box]` table.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum WrittenBox<'a> {
-    Sine(&'a BoxTable),
-    Spline { duration: Duration },
+    #[serde(skip_serializing_if = "Option::is_none")]
+    attitude_steps: Option<NonZeroUsize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_intervals: Option<NonZeroUsize>,
+    #[serde(rename = "box", skip_serializing_if = "BoxTable::is_empty")]
+    boxes: &'a BoxTable,
 }
 
 impl Serialize for TrajectoryTable {
@@ -92,7 +87,6 @@ impl Serialize for TrajectoryTable {
         let [is_sine, is_spline] = [FamilyName::SinePolynomial, FamilyName::Spline]
             .map(|family| self.families().contains(&family));
         let of = |is_used: bool, value: &Spanned<usize>| is_used.then(|| *value.get_ref());
-        let spline_box = || self.boxes.duration.map(|duration| WrittenBox::Spline { duration });
         WrittenTrajectory {
             family: *self.family.get_ref(),
             terms: of(is_sine, &self.terms),
@@ -100,38 +94,10 @@ impl Serialize for TrajectoryTable {
             degree: of(is_spline, &self.degree),
             attitude_steps: self.attitude_steps,
             peak_intervals: self.peak_intervals,
-            boxes: if is_sine { Some(WrittenBox::Sine(&self.boxes)) } else { spline_box() },
+            boxes: &self.boxes,
         }
         .serialize(serializer)
     }
-}
-
-/// The `[trajectory.box]` table.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-struct BoxTable {
-    /// Half-widths for the coefficients of the first, second, … bump; the last serves all further.
-    coefficient: Spanned<Vec<Positive>>,
-    /// Shortest and longest duration \[s\].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    duration: Option<Duration>,
-    /// Half-widths for `α_6`, `α_7`, … \[s⁻⁶, s⁻⁷, …\].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    alpha: Option<Spanned<Vec<Positive>>>,
-}
-
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-struct Duration(#[serde(deserialize_with = "positive_interval")] [f64; 2]);
-
-/// The search box, in each formulation's variables.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Boxes {
-    /// Half-width for the coefficient of each term.
-    pub coefficient: Vec<f64>,
-    /// Shortest and longest duration \[s\].
-    pub duration: [f64; 2],
-    /// Half-width for each power's `α` \[s⁻⁶, s⁻⁷, …\].
-    pub alpha: Vec<f64>,
 }
 
 /// The task over the family that a file names, and where to search it.
@@ -248,10 +214,11 @@ impl TrajectoryTable {
     fn own_keys(&self) -> [(&'static str, FamilyName, Range<usize>); 5] {
         use FamilyName::{SinePolynomial, Spline};
         let BoxTable { coefficient, alpha, .. } = &self.boxes;
+        let span = |widths: &Option<_>| widths.as_ref().map_or(0..0, Spanned::span);
         [
             ("terms", SinePolynomial, self.terms.span()),
-            ("box.coefficient", SinePolynomial, coefficient.span()),
-            ("box.alpha", SinePolynomial, alpha.as_ref().map_or(0..0, Spanned::span)),
+            ("box.coefficient", SinePolynomial, span(coefficient)),
+            ("box.alpha", SinePolynomial, span(alpha)),
             ("pieces", Spline, self.pieces.span()),
             ("degree", Spline, self.degree.span()),
         ]
@@ -270,25 +237,29 @@ impl TrajectoryTable {
 
     /// The problem over a task, and where to search it.
     pub fn build(&self, task: Arc<Task>, document: &Document) -> Result<TaskProblem, InputError> {
-        let accuracy = Accuracy {
-            attitude_steps: self.attitude_steps.get(),
-            peak_intervals: self.peak_intervals.get(),
-        };
         match self.family() {
             FamilyName::SinePolynomial => {
                 let terms = *self.terms.get_ref();
                 check_terms(terms, self.terms.span(), document)?;
-                let problem = Reorientation::new(task, terms, accuracy);
-                let limits = &problem.task().limits;
-                let boxes = self.boxes.build(problem.family(), limits, document)?;
+                let boxes = self.boxes.build(&task, terms, document)?;
+                let problem = Reorientation::new(task, terms, self.accuracy(boxes.accuracy()));
                 Ok(TaskProblem::SinePolynomial(problem, boxes))
             }
             FamilyName::Spline => {
                 let family = self.spline(&task, document)?;
-                let problem = Reorientation::over(task, family, accuracy);
+                let problem = Reorientation::over(task, family, self.accuracy(COARSE));
                 let boxes = self.spline_box(&problem, document)?;
                 Ok(TaskProblem::Spline(problem, boxes))
             }
+        }
+    }
+
+    /// As finely as the file says, and as this where it does not.
+    fn accuracy(&self, default: Accuracy) -> Accuracy {
+        let given = |given: Option<NonZeroUsize>, default| given.map_or(default, NonZeroUsize::get);
+        Accuracy {
+            attitude_steps: given(self.attitude_steps, default.attitude_steps),
+            peak_intervals: given(self.peak_intervals, default.peak_intervals),
         }
     }
 
@@ -320,45 +291,6 @@ impl TrajectoryTable {
     }
 }
 
-impl BoxTable {
-    fn build(
-        &self,
-        family: &SinePolynomial,
-        limits: &Limits,
-        document: &Document,
-    ) -> Result<Boxes, InputError> {
-        let terms = family.terms();
-        let given = self.coefficient.get_ref();
-        let Some(last) = given.last() else {
-            let message = "found an empty list, expected at least one half-width";
-            return Err(document.error_at(self.coefficient.span(), message, None));
-        };
-        let widths = given.iter().chain(std::iter::repeat(last)).map(|w| w.0);
-        let coefficient: Vec<f64> = widths.take(terms).collect();
-        let duration = match self.duration {
-            Some(Duration(given)) => given,
-            None => default_duration(family, limits, coefficient[0]),
-        };
-        let alpha = match &self.alpha {
-            None => default_alpha(family, &coefficient, duration),
-            Some(widths) if widths.get_ref().len() == terms => {
-                widths.get_ref().iter().map(|w| w.0).collect()
-            }
-            Some(widths) => {
-                let found = widths.get_ref().len();
-                let message = format!("found {found} half-widths, expected {terms}, one per term");
-                return Err(document.error_at(widths.span(), message, None));
-            }
-        };
-        let mut all = coefficient.iter().chain(&duration).chain(&alpha);
-        if !all.all(|bound| bound.is_finite()) {
-            let message = "durations or powers of time are infinite in this box: are limits and box of a sensible size?";
-            return Err(document.error_at(self.coefficient.span(), message, None));
-        }
-        Ok(Boxes { coefficient, duration, alpha })
-    }
-}
-
 /// Whether a family can have so many terms.
 pub(super) fn check_terms(
     terms: usize,
@@ -384,35 +316,4 @@ pub(super) fn check_pieces(
     let (fewest, most) = PIECES.into_inner();
     let message = format!("found {pieces}, expected {fewest} to {most} pieces");
     Err(document.error_at(span, message, None))
-}
-
-/// From a quarter to one and a half times the shortest duration of a typical shape: every joint's
-/// first bump at half its half-width. Follows the limits, and is never zero, though start and goal be the same.
-fn default_duration(family: &SinePolynomial, limits: &Limits, width: f64) -> [f64; 2] {
-    let mut coefficients = vec![0.0; family.dimension()];
-    coefficients.iter_mut().step_by(family.terms()).for_each(|c| *c = width / 2.0);
-    let typical = Peaks::of(family, &coefficients, 256).shortest_duration(limits);
-    [typical / 4.0, typical * 1.5]
-}
-
-/// The smallest box of `α` that holds the whole box of coefficients at the geometric mean of the
-/// shortest and the longest duration.
-fn default_alpha(
-    family: &SinePolynomial,
-    coefficient: &[f64],
-    [shortest, longest]: [f64; 2],
-) -> Vec<f64> {
-    let duration = (shortest * longest).sqrt();
-    let terms = family.terms();
-    let mut alpha = vec![0.0; terms];
-    for (k, width) in coefficient.iter().enumerate() {
-        // The first joint stands for all: the change of basis is the same for each.
-        let mut unit = vec![0.0; family.dimension()];
-        unit[k] = *width;
-        let powers = family.to_alpha(&unit, duration);
-        for (sum, power) in alpha.iter_mut().zip(powers.iter().step_by(family.joints())) {
-            *sum += power.abs();
-        }
-    }
-    alpha
 }
