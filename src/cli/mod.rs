@@ -34,6 +34,7 @@ mod results;
 mod run;
 #[cfg(feature = "harness")]
 mod status;
+mod walls;
 #[cfg(feature = "harness")]
 mod warnings;
 
