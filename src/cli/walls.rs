@@ -93,7 +93,7 @@ impl Walls {
         let write = format!("`{wider}` in `[trajectory.box]`");
         Some(match missed_by {
             Some(degrees) => format!(
-                "the base ends {degrees:.3}° from its goal, with coefficients {on_walls}; a wider box may hold a motion that \
+                "the base ends {degrees:.3}° from its goal, {on_walls}; a wider box may hold a motion that \
                  reaches it: write {write}, or try `--family spline`"
             ),
             None => format!("{on_walls}; a wider box may hold a faster motion: write {write}"),
