@@ -6,6 +6,9 @@ use crate::search::Problem as _;
 /// A variable nearer to a wall than this share of its box is on it.
 const ON: f64 = 1e-4;
 
+/// So many are named to people; JSON has all.
+const NAMED: usize = 4;
+
 /// A variable of the box, one with a duration last and joints counted from one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Variable {
@@ -83,20 +86,24 @@ impl Walls {
         self.on.iter().map(name).collect()
     }
 
-    /// What a warning says of them, where there are any, of a motion that ends so far from its goal \[°\], where it misses it.
+    /// What to say of them, where there are any: a warning of a motion that ends so far from its goal \[°\], a note of one that reaches it.
     pub(super) fn told(&self, missed_by: Option<f64>) -> Option<String> {
         if self.on.is_empty() {
             return None;
         }
-        let (names, wider) = (self.names().join("; "), self.wider.join(" and "));
-        let on_walls = format!("on walls of the search box: {names}");
-        let write = format!("`{wider}` in `[trajectory.box]`");
+        let names = self.names();
+        let mut on_walls = names[..names.len().min(NAMED)].join("; ");
+        if names.len() > NAMED {
+            on_walls = format!("{on_walls} and {} more", names.len() - NAMED);
+        }
+        let on_walls = format!("on walls of the search box: {on_walls}");
+        let write = format!("write `{}` in `[trajectory.box]`", self.wider.join("` and `"));
         Some(match missed_by {
             Some(degrees) => format!(
-                "the base ends {degrees:.3}° from its goal, {on_walls}; a wider box may hold a motion that \
-                 reaches it: write {write}, or try `--family spline`"
+                "warning: the base ends {degrees:.3}° from its goal, {on_walls}; a wider box may hold a motion that reaches it: \
+                 {write}, or try `--family spline`"
             ),
-            None => format!("{on_walls}; a wider box may hold a faster motion: write {write}"),
+            None => format!("note: {on_walls}; a wider box may hold a better motion: {write}"),
         })
     }
 }
@@ -133,12 +140,17 @@ mod tests {
         let on = walls(Formulation::TimeFree, |x| (x[0], x[5]) = (1.0, -0.35));
         assert_eq!(on.names(), ["joint 1, bump 1", "joint 3, bump 2"]);
         let write = "write `coefficient = [2.0, 0.7]` in `[trajectory.box]`";
-        assert!(on.told(None).unwrap().ends_with(write), "{:?}", on.told(None));
-        assert!(on.told(Some(3.0)).unwrap().contains(write), "{:?}", on.told(Some(3.0)));
+        let [reached, missed] = [None, Some(3.0)].map(|missed_by| on.told(missed_by).unwrap());
+        assert!(reached.starts_with("note: ") && reached.ends_with(write), "{reached}");
+        assert!(missed.starts_with("warning: the base ends 3.000° "), "{missed}");
+        assert!(missed.contains(write), "{missed}");
+
+        let many = walls(Formulation::TimeFree, |x| x[..12].fill(-0.35)).told(None).unwrap();
+        assert!(many.contains("joint 4, bump 2 and 2 more; a wider box"), "{many}");
 
         let second = walls(Formulation::Scaled, |x| (x[3], x[12]) = (0.35, 12.0));
         assert_eq!(second.names(), ["joint 2, bump 2", "duration"]);
-        let write = "write `coefficient = [1.0, 0.7] and duration = [4.0, 24.0]` in";
+        let write = "write `coefficient = [1.0, 0.7]` and `duration = [4.0, 24.0]` in";
         assert!(second.told(None).unwrap().contains(write), "{:?}", second.told(None));
 
         let raw = walls(Formulation::Raw, |x| x[12] = 4.0);
