@@ -63,7 +63,12 @@ fn boxes_widen_as_the_base_is_heavier_and_its_turn_larger() {
     // All bumps alike, and powers of time and durations follow.
     let [narrow, wide] = [on_base(1.0, 5.0, "").1, on_base(1e4, 20.0, "").1];
     assert_eq!(wide.coefficient[1], 16.0 * narrow.coefficient[1]);
-    assert!(wide.alpha[0] > narrow.alpha[0] || wide.duration[1] > narrow.duration[1]);
+    assert!(wide.duration[1] > 5.0 * narrow.duration[1], "{wide:?} {narrow:?}");
+    assert!(wide.alpha[0] != narrow.alpha[0]);
+    // A wider box holds the fast motions, too.
+    let shortest = |wider: &str| on_base(1.0, 20.0, wider).1.duration[0];
+    assert_eq!(shortest("box.coefficient = [16]\n"), shortest("box.coefficient = [1]\n"));
+    assert!(shortest("box.coefficient = [0.3]\n") <= shortest(""));
 }
 
 /// A base of 6 t is out of reach of the narrowest box, not of its own.

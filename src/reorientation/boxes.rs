@@ -79,12 +79,15 @@ impl BoxTable {
         let coefficient = self.coefficients(task, terms, document)?;
         let problem = Reorientation::new(task.clone(), terms, COARSE);
         let family = problem.family();
-        let duration = match self.duration {
-            Some(Duration(given)) => given,
-            None => default_duration(family, &task.limits, coefficient[0]),
-        };
+        let around = |width| around_typical(family, &task.limits, width);
+        let given = self.duration.map(|Duration(given)| given);
+        let typical = given.unwrap_or_else(|| around(coefficient[0]));
+        let duration = given.unwrap_or_else(|| {
+            // A wider box leaves out no fast motion.
+            [typical[0].min(around(NARROWEST[0])[0]), typical[1]]
+        });
         let alpha = match &self.alpha {
-            None => default_alpha(family, &coefficient, duration),
+            None => default_alpha(family, &coefficient, typical),
             Some(widths) if widths.get_ref().len() == terms => {
                 widths.get_ref().iter().map(|w| w.0).collect()
             }
@@ -122,6 +125,19 @@ impl BoxTable {
             return Err(document.error_at(place, message, None));
         };
         Ok(widths.iter().chain(std::iter::repeat(last)).copied().take(terms).collect())
+    }
+}
+
+impl From<&Boxes> for BoxTable {
+    fn from(boxes: &Boxes) -> Self {
+        let stated = |widths: &[f64]| {
+            Some(Spanned::new(0..0, widths.iter().copied().map(Positive).collect()))
+        };
+        Self {
+            coefficient: stated(&boxes.coefficient),
+            duration: Some(Duration(boxes.duration)),
+            alpha: stated(&boxes.alpha),
+        }
     }
 }
 
@@ -168,7 +184,7 @@ const NOTHING: f64 = 1e-9;
 
 /// From a quarter to one and a half times the shortest duration of a typical shape: every joint's
 /// first bump at half its half-width. Follows the limits, and is never zero, though start and goal be the same.
-fn default_duration(family: &SinePolynomial, limits: &Limits, width: f64) -> [f64; 2] {
+fn around_typical(family: &SinePolynomial, limits: &Limits, width: f64) -> [f64; 2] {
     let mut coefficients = vec![0.0; family.dimension()];
     coefficients.iter_mut().step_by(family.terms()).for_each(|c| *c = width / 2.0);
     let typical = Peaks::of(family, &coefficients, 256).shortest_duration(limits);
