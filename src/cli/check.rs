@@ -68,8 +68,9 @@ impl Check {
             }
             Kind::Task => {
                 let file = TaskFile::read(&document)?;
-                warn_of(&file.problem(&document)?.task().robot);
-                print_resolved("task", &file)?;
+                let problem = file.problem(&document)?;
+                warn_of(&problem.task().robot);
+                print_resolved("task", &file.resolved(&problem))?;
             }
             Kind::Experiment => check_experiment(&document, !self.no_estimate)?,
         }

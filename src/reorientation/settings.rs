@@ -137,6 +137,12 @@ impl TaskFile {
         self.trajectory.build(Arc::new(self.task.build(document)?), document)
     }
 
+    /// The same with the box and the accuracy of its problem written out.
+    #[must_use]
+    pub fn resolved(self, problem: &TaskProblem) -> Self {
+        Self { trajectory: self.trajectory.resolved(problem), ..self }
+    }
+
     /// The task over sine polynomials, its search settings and its boxes; a file that names another family is an error.
     pub fn build(&self, document: &Document) -> Result<(Reorientation, Boxes), InputError> {
         match self.problem(document)? {
@@ -183,6 +189,22 @@ impl TrajectoryTable {
     #[must_use]
     pub fn with_degree(self, degree: Spanned<usize>) -> Self {
         Self { degree, ..self }
+    }
+
+    fn resolved(self, problem: &TaskProblem) -> Self {
+        let (accuracy, boxes) = match problem {
+            TaskProblem::SinePolynomial(problem, boxes) => (problem.accuracy(), boxes.into()),
+            TaskProblem::Spline(problem, SplineBox { duration }) => {
+                let duration = Some(Duration(*duration));
+                (problem.accuracy(), BoxTable { duration, ..BoxTable::default() })
+            }
+        };
+        Self {
+            attitude_steps: NonZeroUsize::new(accuracy.attitude_steps),
+            peak_intervals: NonZeroUsize::new(accuracy.peak_intervals),
+            boxes,
+            ..self
+        }
     }
 
     /// The same where a sweep has these families.

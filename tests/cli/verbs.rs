@@ -243,15 +243,26 @@ fn list_shows_everything_with_its_settings() {
     insta::assert_snapshot!("list", all.join("\n"));
 }
 
+/// Last digits of what follows from sines differ between processors.
+fn without_last_digits(text: &str) -> String {
+    let mut digits = 0;
+    let mut is_kept = |c: char| {
+        digits = if c.is_ascii_digit() { digits + 1 } else { 0 };
+        digits <= 8
+    };
+    text.chars().filter(|&c| is_kept(c)).collect()
+}
+
 #[test]
 fn check_prints_what_is_resolved() {
     let folder = Folder::new()
         .with("task.toml", "[task.limits]\njerk_deg_s3 = 40\n")
+        .with("spline.toml", "[trajectory]\nfamily = 'spline'\n")
         .with("robot.toml", include_str!("../../src/robot/xiao2023.toml"));
-    for name in ["task", "robot"] {
+    for name in ["task", "spline", "robot"] {
         let output = folder.run(&["check", &format!("{name}.toml")]);
         assert!(output.status.success(), "{}", stderr(&output));
-        insta::assert_snapshot!(format!("check_{name}"), stdout(&output));
+        insta::assert_snapshot!(format!("check_{name}"), without_last_digits(&stdout(&output)));
         assert_eq!(stderr(&output).matches("breaks the triangle inequality").count(), 1);
         // What is printed is itself a file that says the same.
         let again = Folder::new().with("again.toml", stdout(&output)).run(&["check", "again.toml"]);
