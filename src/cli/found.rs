@@ -5,6 +5,7 @@ use std::fmt::{self, Write as _};
 use serde::Serialize;
 
 use super::motion::{AssessmentJson, ShapeJson, Told};
+use super::walls::Walls;
 use crate::reorientation::{
     Assessment, BestKnown, Block, FamilyName, FamilySpec, Formulated, Reach, SearchedFamily,
 };
@@ -26,6 +27,8 @@ pub(super) struct Found<F: Family> {
     pub(super) coefficients: Vec<f64>,
     pub(super) assessment: Assessment,
     pub(super) reach: Reach,
+    /// Of families whose box is a choice.
+    pub(super) walls: Option<Walls>,
     pub(super) spent: Spent,
     pub(super) interrupted: bool,
 }
@@ -49,6 +52,8 @@ pub(super) struct PlanJson<'a> {
     status: &'static str,
     tolerance_deg: f64,
     least_time: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    on_walls: Option<Vec<String>>,
     best_known_j: Option<f64>,
     #[serde(flatten)]
     assessment: AssessmentJson,
@@ -117,6 +122,7 @@ impl<F: SearchedFamily> Found<F> {
             status: self.reach.name(),
             tolerance_deg: problem.task().goal_tolerance.to_degrees(),
             least_time: self.reach.least_time(),
+            on_walls: self.walls.as_ref().map(Walls::names),
             best_known_j: known.map(|known| known.j),
             assessment: (&self.assessment).into(),
             shape: ShapeJson::new(problem, &self.coefficients, self.assessment.duration),
@@ -150,9 +156,18 @@ impl<F: SearchedFamily> Found<F> {
         text
     }
 
-    /// Warns where the goal is missed.
+    /// Warns where the goal is missed; says which variables are on walls of the box, where that may matter.
     pub(super) fn warn(&self) {
         let task = self.problem.task();
+        let residual = self.assessment.residual().to_degrees();
+        let is_reached = self.reach == Reach::Reached;
+        if is_reached || self.reach == Reach::NotFound {
+            let told = self.walls.as_ref().and_then(|w| w.told((!is_reached).then_some(residual)));
+            if let Some(told) = told {
+                note!("{told}");
+                return;
+            }
+        }
         let why = match self.reach {
             Reach::Reached => return,
             Reach::Blocked(Block::NoTurn) => {
@@ -179,7 +194,6 @@ impl<F: SearchedFamily> Found<F> {
                 format!("and no motion was found that reaches it; {advice}")
             }
         };
-        let residual = self.assessment.residual().to_degrees();
         note!("warning: the base ends {residual:.3}° from its goal, {why}");
     }
 }

@@ -11,6 +11,7 @@ use toml::Spanned;
 use super::found::{Found, OtherFamily, Spent};
 use super::motion::MotionFiles;
 use super::progress::Bar;
+use super::walls::Walls;
 use super::{CliError, read_or, shown, warn_of, watch};
 use crate::input::{InputError, nearest};
 use crate::optimiser::{Scp, Settings};
@@ -92,7 +93,10 @@ impl Plan {
                     Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree);
                 let formulated =
                     Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
-                let found = self.search(&settings, formulated, self.seed, self.budget)?;
+                let mut found = self.search(&settings, formulated, self.seed, self.budget)?;
+                let walls =
+                    Walls::of(&found.problem, &found.coefficients, found.assessment.duration);
+                found.walls = Some(walls);
                 self.finish(&found, None, file.task)
             }
             TaskProblem::Spline(problem, _) => {
@@ -246,7 +250,7 @@ impl Plan {
             seconds,
         };
         let reach = Reach::of(problem.task().task(), &assessment);
-        Ok(Found { problem, coefficients, assessment, reach, spent, interrupted })
+        Ok(Found { problem, coefficients, assessment, reach, walls: None, spent, interrupted })
     }
 
     /// Says how the motion stands in the file of the best known: where it should, or was asked to.
