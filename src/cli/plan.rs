@@ -93,7 +93,7 @@ impl Plan {
                     Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree);
                 let formulated =
                     Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
-                let mut found = self.search(&settings, formulated, self.seed, self.budget)?;
+                let mut found = search(&settings, formulated, self.seed, self.budget)?;
                 let walls =
                     Walls::of(&found.problem, &found.coefficients, found.assessment.duration);
                 found.walls = Some(walls);
@@ -101,7 +101,7 @@ impl Plan {
             }
             TaskProblem::Spline(problem, _) => {
                 warn_of(&problem.task().robot);
-                let found = self.search_splines(&settings, problem, refused)?;
+                let found = self.search_splines(&settings, &problem, refused)?;
                 let other = if is_named || found.interrupted {
                     None
                 } else {
@@ -149,7 +149,7 @@ impl Plan {
     fn search_splines(
         &self,
         settings: &Settings,
-        problem: Reorientation<Spline>,
+        problem: &Reorientation<Spline>,
         refused: impl Fn(BoundsError) -> InputError,
     ) -> Result<Found<Spline>, CliError> {
         let settings = match settings {
@@ -161,7 +161,7 @@ impl Plan {
             other => other.clone(),
         };
         let own = Formulated::free_form(Arc::new(problem.clone())).map_err(&refused)?;
-        let mut found = self.search(&settings, own, self.seed, self.budget)?;
+        let mut found = search(&settings, own, self.seed, self.budget)?;
         let mut time_weight = 1.0 - problem.task().base_weight;
         for round in 1..=MORE_ROUNDS {
             let left = self.budget - found.spent.evaluations;
@@ -173,7 +173,7 @@ impl Plan {
             let (family, accuracy) = (problem.family().clone(), problem.accuracy());
             let demanding = Reorientation::over(Arc::new(task), family, accuracy);
             let formulated = Formulated::free_form(Arc::new(demanding)).map_err(&refused)?;
-            let again = self.search(&settings, formulated, self.seed.wrapping_add(round), left)?;
+            let again = search(&settings, formulated, self.seed.wrapping_add(round), left)?;
             found = found.or(again);
         }
         Ok(found)
@@ -185,7 +185,7 @@ impl Plan {
         let terms = problem.family().terms();
         let formulated = Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes).ok()?;
         let scp = Scp { starts: NonZeroUsize::new(OTHER_STARTS), ..Scp::default() };
-        let found = self.search(&Settings::Scp(scp), formulated, self.seed, self.budget).ok()?;
+        let found = search(&Settings::Scp(scp), formulated, self.seed, self.budget).ok()?;
         (!found.interrupted).then(|| OtherFamily::new(terms, &found))
     }
 
@@ -215,44 +215,6 @@ impl Plan {
         Ok(())
     }
 
-    fn search<F: Family>(
-        &self,
-        settings: &Settings,
-        problem: Formulated<F>,
-        seed: u64,
-        budget: u64,
-    ) -> Result<Found<F>, CliError> {
-        let watch = watch();
-        let mut oracle = Oracle::new(&problem, budget, &watch).parallel();
-        let started = Instant::now();
-        let stop = {
-            let _bar = Bar::new(budget, watch.clone());
-            settings.optimiser().minimise(&mut oracle, &mut Rng::new(seed))
-        };
-        let seconds = started.elapsed().as_secs_f64();
-        let interrupted = stop == Err(Stop::Interrupted);
-        if let Err(Stop::Failed(failure)) = stop {
-            note!("warning: the search failed: {failure}");
-        }
-        let Some(best) = oracle.best().cloned() else {
-            return Err(if interrupted {
-                CliError::Interrupted("no motion was found before".to_owned())
-            } else {
-                CliError::NoMotion
-            });
-        };
-        let (coefficients, assessment) = problem.certify(&best.x);
-        let spent = Spent {
-            evaluations: oracle.evaluations(),
-            linearisations: oracle.linearisations(),
-            curvatures: oracle.curvatures(),
-            conic_solves: oracle.conic_solves(),
-            seconds,
-        };
-        let reach = Reach::of(problem.task().task(), &assessment);
-        Ok(Found { problem, coefficients, assessment, reach, walls: None, spent, interrupted })
-    }
-
     /// Says how the motion stands in the file of the best known: where it should, or was asked to.
     fn say_entry<F: SearchedFamily>(&self, found: &Found<F>, task: TaskTable) {
         let (problem, cost) = (found.problem.task(), found.assessment.cost);
@@ -278,6 +240,44 @@ impl Plan {
             note!("the entry for results/best-known.toml:\n\n{entry}");
         }
     }
+}
+
+/// Runs an optimiser once.
+fn search<F: Family>(
+    settings: &Settings,
+    problem: Formulated<F>,
+    seed: u64,
+    budget: u64,
+) -> Result<Found<F>, CliError> {
+    let watch = watch();
+    let mut oracle = Oracle::new(&problem, budget, &watch).parallel();
+    let started = Instant::now();
+    let stop = {
+        let _bar = Bar::new(budget, watch.clone());
+        settings.optimiser().minimise(&mut oracle, &mut Rng::new(seed))
+    };
+    let seconds = started.elapsed().as_secs_f64();
+    let interrupted = stop == Err(Stop::Interrupted);
+    if let Err(Stop::Failed(failure)) = stop {
+        note!("warning: the search failed: {failure}");
+    }
+    let Some(best) = oracle.best().cloned() else {
+        return Err(if interrupted {
+            CliError::Interrupted("no motion was found before".to_owned())
+        } else {
+            CliError::NoMotion
+        });
+    };
+    let (coefficients, assessment) = problem.certify(&best.x);
+    let spent = Spent {
+        evaluations: oracle.evaluations(),
+        linearisations: oracle.linearisations(),
+        curvatures: oracle.curvatures(),
+        conic_solves: oracle.conic_solves(),
+        seconds,
+    };
+    let reach = Reach::of(problem.task().task(), &assessment);
+    Ok(Found { problem, coefficients, assessment, reach, walls: None, spent, interrupted })
 }
 
 fn find_optimiser(name: &str) -> Result<Settings, CliError> {

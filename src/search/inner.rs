@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::oracle::{Best, Oracle, Stop, TracePoint};
 
-impl<'a> Oracle<'a> {
+impl Oracle<'_> {
     /// Lets a search spend so many of the evaluations left, at most, and gives the best that it found.
     /// Where only these are spent, and not the whole budget, that is no reason to stop.
     pub fn within(

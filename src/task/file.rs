@@ -30,6 +30,7 @@ pub struct TaskTable {
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
+#[expect(clippy::struct_field_names, reason = "keys of files have their units")]
 struct PostureTable {
     joints_deg: Spanned<Vec<Finite>>,
     #[serde(deserialize_with = "finite_array")]
