@@ -60,7 +60,7 @@ pub(super) struct Plan {
 }
 
 /// Starts that `scp` follows over splines.
-const SPLINE_STARTS: usize = 24;
+const SPLINE_STARTS: usize = 20;
 
 /// Share of J that `scp` is content to miss there.
 const SPLINE_TOLERANCE: f64 = 1e-6;
@@ -73,7 +73,7 @@ const MORE_ROUNDS: u64 = 2;
 const LESS_TIME: f64 = 100.0;
 
 /// Starts among the paper's family, to compare.
-const OTHER_STARTS: usize = 20;
+const OTHER_STARTS: usize = 12;
 
 impl Plan {
     pub(super) fn execute(self) -> Result<(), CliError> {
@@ -93,7 +93,10 @@ impl Plan {
                     Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree);
                 let formulated =
                     Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
-                let mut found = search(&settings, formulated, self.seed, self.budget)?;
+                let mut found = {
+                    let _bar = Bar::new(self.budget, watch());
+                    search(&settings, formulated, self.seed, self.budget)?
+                };
                 let walls =
                     Walls::of(&found.problem, &found.coefficients, found.assessment.duration);
                 found.walls = Some(walls);
@@ -101,13 +104,18 @@ impl Plan {
             }
             TaskProblem::Spline(problem, _) => {
                 warn_of(&problem.task().robot);
-                let found = self.search_splines(&settings, &problem, refused)?;
-                let other = if is_named || found.interrupted {
-                    None
-                } else {
-                    let table = file.trajectory.with_family(FamilyName::SinePolynomial);
-                    self.search_other(table.build(found.problem.task().task().clone(), &document)?)
+                let table = file.trajectory.with_family(FamilyName::SinePolynomial);
+                let sine = (!is_named).then(|| table.build(problem.task().clone(), &document));
+                let sine = sine.transpose()?;
+                let (found, other) = {
+                    let _bar = Bar::new(self.budget, watch());
+                    rayon::join(
+                        || self.search_splines(&settings, &problem, refused),
+                        || sine.and_then(|sine| self.search_other(sine)),
+                    )
                 };
+                let found = found?;
+                let other = other.filter(|_| !found.interrupted);
                 self.finish(&found, other, file.task)
             }
         }
@@ -150,7 +158,7 @@ impl Plan {
         &self,
         settings: &Settings,
         problem: &Reorientation<Spline>,
-        refused: impl Fn(BoundsError) -> InputError,
+        refused: impl Fn(BoundsError) -> InputError + Send,
     ) -> Result<Found<Spline>, CliError> {
         let settings = match settings {
             Settings::Scp(scp) => Settings::Scp(Scp {
@@ -252,10 +260,7 @@ fn search<F: Family>(
     let watch = watch();
     let mut oracle = Oracle::new(&problem, budget, &watch).parallel();
     let started = Instant::now();
-    let stop = {
-        let _bar = Bar::new(budget, watch.clone());
-        settings.optimiser().minimise(&mut oracle, &mut Rng::new(seed))
-    };
+    let stop = settings.optimiser().minimise(&mut oracle, &mut Rng::new(seed));
     let seconds = started.elapsed().as_secs_f64();
     let interrupted = stop == Err(Stop::Interrupted);
     if let Err(Stop::Failed(failure)) = stop {

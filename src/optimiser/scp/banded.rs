@@ -38,16 +38,15 @@ impl Triangle {
         for own in self.rows[first..].iter_mut().take(self.width) {
             let (a, b) = (own[0], row[0]);
             if b != 0.0 {
-                let length = (a * a + b * b).sqrt();
-                let (c, s) = (a / length, b / length);
+                let inverse = 1.0 / (a * a + b * b).sqrt();
+                let (c, s) = (a * inverse, b * inverse);
                 for (own, row) in own.iter_mut().zip(&mut row) {
                     let turned = c * *own + s * *row;
                     *row = c * *row - s * *own;
                     *own = turned;
                 }
             }
-            row.copy_within(1..WIDTH, 0);
-            row[WIDTH - 1] = 0.0;
+            row = [row[1], row[2], row[3], row[4], row[5], 0.0, row[6], row[7]];
         }
         self.absorb_border([row[WIDTH], row[WIDTH + 1]]);
     }

@@ -247,7 +247,7 @@ const REDUCTION: usize = 3;
 
 /// Tolerance and most steps where ends are starts only. Where steps are few and each takes long, a rough end tells enough.
 const STRICT: f64 = 1e-5;
-const LOOSE: f64 = 1e-3;
+const LOOSE: f64 = 3e-3;
 const FEW: NonZeroUsize = NonZeroUsize::new(40).unwrap();
 
 /// Ends whose costs differ by less than this share are one.
