@@ -8,7 +8,7 @@ use driftless::momentum::base_twist;
 use driftless::optimiser::{Ending, Optimiser as _, Scp};
 use driftless::reorientation::{Accuracy, Formulated, Reorientation, TaskFile};
 use driftless::robot::Robot;
-use driftless::search::{LinearLimit, Oracle, Problem as _, Rng, Watch};
+use driftless::search::{LinearLimit, Oracle, Problem as _, Rng, Stop, Watch};
 use driftless::task::Task;
 use driftless::trajectory::{Curve as _, Family as _, Spline};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -210,6 +210,42 @@ fn a_search_by_way_of_fewer_pieces_ends_at_the_fastest_motion() {
     assert!(motion.residual().to_degrees() < 1e-6, "{}°", motion.residual().to_degrees());
 }
 
+/// Searches that run at the same time find, spend and tell what they would one after the other.
+#[test]
+fn searches_at_the_same_time_are_those_one_after_the_other() {
+    let problem = free_form(&paper(), 16, 4);
+    let search = Scp { starts: NonZeroUsize::new(5), ..Scp::default() };
+    let [one, all] = [false, true].map(|is_parallel| {
+        let watch = Watch::default();
+        let oracle = Oracle::new(&problem, 10_000, &watch);
+        let mut oracle = if is_parallel { oracle.parallel() } else { oracle };
+        search.minimise(&mut oracle, &mut Rng::new(3)).unwrap();
+        let spent = [oracle.evaluations(), oracle.linearisations(), oracle.curvatures()];
+        let counts = (spent, oracle.conic_solves(), oracle.first_feasible());
+        assert_eq!(watch.evaluations(), oracle.evaluations());
+        let best = oracle.best().unwrap().clone();
+        let trace: Vec<_> =
+            oracle.into_trace().into_iter().map(|point| (point.evaluation, point.best)).collect();
+        (counts, best, trace)
+    });
+    assert_eq!(one, all);
+    assert!(one.2.len() > 5 && one.2.is_sorted_by(|a, b| a.0 < b.0 && a.1.cost >= b.1.cost));
+}
+
+/// However little there is to spend, searches at the same time spend no more.
+#[test]
+fn a_small_budget_is_shared() {
+    let problem = free_form(&paper(), 16, 4);
+    for budget in [1, 3, 20] {
+        let watch = Watch::default();
+        let mut oracle = Oracle::new(&problem, budget, &watch).parallel();
+        let search = Scp { starts: NonZeroUsize::new(5), ..Scp::default() };
+        assert_eq!(search.minimise(&mut oracle, &mut Rng::new(3)), Err(Stop::BudgetSpent));
+        assert_eq!(oracle.evaluations(), budget);
+        assert_eq!(oracle.best().unwrap().x.len(), problem.bounds().len());
+    }
+}
+
 /// The paper's task with a narrower range of the fourth joint.
 fn narrowed(task: &Task) -> Arc<Task> {
     let text = include_str!("../src/robot/xiao2023.toml");
@@ -224,10 +260,11 @@ fn narrowed(task: &Task) -> Arc<Task> {
 fn ranges_are_kept() {
     let narrow = narrowed(&paper());
     let problem = free_form(&narrow, 20, 4);
-    let start = problem.timed().unwrap().start(&mut Rng::new(5), 0.0);
     let watch = Watch::default();
-    let mut oracle = Oracle::new(&problem, 1_000, &watch);
-    Scp::default().follow(&mut oracle, &start).unwrap();
+    let mut oracle = Oracle::new(&problem, 10_000, &watch);
+    // A single start may end where range and goal are at odds.
+    let search = Scp { starts: NonZeroUsize::new(4), ..Scp::default() };
+    search.minimise(&mut oracle, &mut Rng::new(5)).unwrap();
     let (coefficients, motion) = problem.certify(&oracle.best().unwrap().x);
     assert!(motion.range_excess < 1e-9 && motion.residual().to_degrees() < 1e-6);
     let family = problem.task().family();

@@ -7,7 +7,8 @@ use serde::Serialize;
 use super::motion::{AssessmentJson, ShapeJson, Told};
 use super::walls::Walls;
 use crate::reorientation::{
-    Assessment, BestKnown, Block, FamilyName, FamilySpec, Formulated, Reach, SearchedFamily,
+    Accuracy, Assessment, BestKnown, Block, FamilyName, FamilySpec, Formulated, Reach,
+    SearchedFamily,
 };
 use crate::trajectory::{Family, SinePolynomial};
 
@@ -89,6 +90,14 @@ impl fmt::Display for OtherFamily {
 }
 
 impl<F: SearchedFamily> Found<F> {
+    /// The same motion, judged by another task over the same family.
+    pub(super) fn judged_by(self, problem: Formulated<F>) -> Self {
+        let assessment =
+            problem.task().with_accuracy(Accuracy::FINE).assess(&self.coefficients, None);
+        let reach = Reach::of(problem.task().task(), &assessment);
+        Self { problem, assessment, reach, ..self }
+    }
+
     /// The one that ends nearer to the goal, unless both reach it; has spent what both have.
     pub(super) fn or(self, other: Self) -> Self {
         let [own, more] = [self.spent, other.spent];

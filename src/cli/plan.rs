@@ -169,7 +169,7 @@ impl Plan {
             other => other.clone(),
         };
         let own = Formulated::free_form(Arc::new(problem.clone())).map_err(&refused)?;
-        let mut found = search(&settings, own, self.seed, self.budget)?;
+        let mut found = search(&settings, own.clone(), self.seed, self.budget)?;
         let mut time_weight = 1.0 - problem.task().base_weight;
         for round in 1..=MORE_ROUNDS {
             let left = self.budget - found.spent.evaluations;
@@ -182,7 +182,7 @@ impl Plan {
             let demanding = Reorientation::over(Arc::new(task), family, accuracy);
             let formulated = Formulated::free_form(Arc::new(demanding)).map_err(&refused)?;
             let again = search(&settings, formulated, self.seed.wrapping_add(round), left)?;
-            found = found.or(again);
+            found = found.or(again.judged_by(own.clone()));
         }
         Ok(found)
     }

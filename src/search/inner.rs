@@ -26,7 +26,7 @@ impl Oracle<'_> {
         }
     }
 
-    /// Has a search work on the [coarser](Problem::coarser) problem, where there is one, with the same budget. Its
+    /// Has a search work on the [coarser](super::Problem::coarser) problem, where there is one, with the same budget. Its
     /// evaluations count here; the best of its points, and those that it ends with, become points of this problem.
     pub fn on_coarser(
         &mut self,
