@@ -32,12 +32,15 @@ fn planar(joints: usize, times: f64, [yaw, pitch, roll]: [f64; 3]) -> Task {
     task
 }
 
+/// The longest motion that was looked for \[s\].
+const LONGEST: f64 = 30.0;
+
 /// What is said of the straight motion, and how long that takes \[s\].
 fn of_straight(task: &Task) -> (Reach, f64) {
     let problem = Reorientation::new(Arc::new(task.clone()), 2, Accuracy::FINE);
     let coefficients = vec![0.0; 2 * task.robot.joint_count()];
     let motion = problem.assess(&coefficients, None);
-    (Reach::of(task, &motion), motion.duration)
+    (Reach::of(task, &motion, LONGEST), motion.duration)
 }
 
 #[test]
@@ -63,11 +66,13 @@ fn tolerances_widen_the_goal() {
 fn a_heavy_base_takes_long() {
     let task = planar(3, 1e6, [0.3, 0.0, 0.0]);
     let (reach, duration) = of_straight(&task);
+    assert!(duration < LONGEST, "{duration} s");
     let Reach::TooSlow(least) = reach else { panic!("{reach:?} after {duration} s") };
     let momentum = (15.0 * 2.0 * 2.0 + 0.6) * f64::to_radians(180.0);
     assert!(least > 0.3 / (momentum / 1e7), "{least} s");
     let (Reach::TooSlow(twice), _) = of_straight(&planar(3, 2e6, [0.3, 0.0, 0.0])) else {
         panic!("a heavier base turns more slowly")
     };
+    assert_eq!(of_straight(&planar(3, 1.0, [3.0, 0.0, 0.0])).0, Reach::NotFound);
     assert!((twice / least - 2.0).abs() < 1e-4, "{twice} s and {least} s");
 }

@@ -28,6 +28,8 @@ pub(super) struct Found<F: Family> {
     pub(super) coefficients: Vec<f64>,
     pub(super) assessment: Assessment,
     pub(super) reach: Reach,
+    /// The longest motion that counts as looked for \[s\].
+    pub(super) longest: f64,
     /// Of families whose box is a choice.
     pub(super) walls: Option<Walls>,
     pub(super) spent: Spent,
@@ -94,7 +96,7 @@ impl<F: SearchedFamily> Found<F> {
     pub(super) fn judged_by(self, problem: Formulated<F>) -> Self {
         let assessment =
             problem.task().with_accuracy(Accuracy::FINE).assess(&self.coefficients, None);
-        let reach = Reach::of(problem.task().task(), &assessment);
+        let reach = Reach::of(problem.task().task(), &assessment, self.longest);
         Self { problem, assessment, reach, ..self }
     }
 

@@ -95,14 +95,14 @@ impl Plan {
                     Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
                 let mut found = {
                     let _bar = Bar::new(self.budget, watch());
-                    search(&settings, formulated, self.seed, self.budget)?
+                    search(&settings, formulated, boxes.duration[1], self.seed, self.budget)?
                 };
                 let walls =
                     Walls::of(&found.problem, &found.coefficients, found.assessment.duration);
                 found.walls = Some(walls);
                 self.finish(&found, None, file.task)
             }
-            TaskProblem::Spline(problem, _) => {
+            TaskProblem::Spline(problem, boxes) => {
                 warn_of(&problem.task().robot);
                 let table = file.trajectory.with_family(FamilyName::SinePolynomial);
                 let sine = (!is_named).then(|| table.build(problem.task().clone(), &document));
@@ -110,7 +110,7 @@ impl Plan {
                 let (found, other) = {
                     let _bar = Bar::new(self.budget, watch());
                     rayon::join(
-                        || self.search_splines(&settings, &problem, refused),
+                        || self.search_splines(&settings, &problem, boxes.duration[1], refused),
                         || sine.and_then(|sine| self.search_other(sine)),
                     )
                 };
@@ -158,6 +158,7 @@ impl Plan {
         &self,
         settings: &Settings,
         problem: &Reorientation<Spline>,
+        longest: f64,
         refused: impl Fn(BoundsError) -> InputError + Send,
     ) -> Result<Found<Spline>, CliError> {
         let settings = match settings {
@@ -169,7 +170,7 @@ impl Plan {
             other => other.clone(),
         };
         let own = Formulated::free_form(Arc::new(problem.clone())).map_err(&refused)?;
-        let mut found = search(&settings, own.clone(), self.seed, self.budget)?;
+        let mut found = search(&settings, own.clone(), longest, self.seed, self.budget)?;
         let mut time_weight = 1.0 - problem.task().base_weight;
         for round in 1..=MORE_ROUNDS {
             let left = self.budget - found.spent.evaluations;
@@ -181,7 +182,8 @@ impl Plan {
             let (family, accuracy) = (problem.family().clone(), problem.accuracy());
             let demanding = Reorientation::over(Arc::new(task), family, accuracy);
             let formulated = Formulated::free_form(Arc::new(demanding)).map_err(&refused)?;
-            let again = search(&settings, formulated, self.seed.wrapping_add(round), left)?;
+            let again =
+                search(&settings, formulated, longest, self.seed.wrapping_add(round), left)?;
             found = found.or(again.judged_by(own.clone()));
         }
         Ok(found)
@@ -193,7 +195,9 @@ impl Plan {
         let terms = problem.family().terms();
         let formulated = Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes).ok()?;
         let scp = Scp { starts: NonZeroUsize::new(OTHER_STARTS), ..Scp::default() };
-        let found = search(&Settings::Scp(scp), formulated, self.seed, self.budget).ok()?;
+        let found =
+            search(&Settings::Scp(scp), formulated, boxes.duration[1], self.seed, self.budget)
+                .ok()?;
         (!found.interrupted).then(|| OtherFamily::new(terms, &found))
     }
 
@@ -254,6 +258,7 @@ impl Plan {
 fn search<F: Family>(
     settings: &Settings,
     problem: Formulated<F>,
+    longest: f64,
     seed: u64,
     budget: u64,
 ) -> Result<Found<F>, CliError> {
@@ -281,8 +286,8 @@ fn search<F: Family>(
         conic_solves: oracle.conic_solves(),
         seconds,
     };
-    let reach = Reach::of(problem.task().task(), &assessment);
-    Ok(Found { problem, coefficients, assessment, reach, walls: None, spent, interrupted })
+    let reach = Reach::of(problem.task().task(), &assessment, longest);
+    Ok(Found { problem, coefficients, assessment, reach, longest, walls: None, spent, interrupted })
 }
 
 fn find_optimiser(name: &str) -> Result<Settings, CliError> {

@@ -40,8 +40,9 @@ pub enum Block {
 }
 
 impl Reach {
-    /// How a motion stands to the goal of its task.
-    pub fn of(task: &Task, motion: &Assessment) -> Self {
+    /// How a motion stands to the goal of its task, where motions of up to `longest` \[s\] were searched: only a goal that
+    /// needs longer than those, and than the motion itself, is [`TooSlow`](Self::TooSlow).
+    pub fn of(task: &Task, motion: &Assessment, longest: f64) -> Self {
         if motion.residual() <= task.goal_tolerance {
             return Self::Reached;
         }
@@ -52,7 +53,7 @@ impl Reach {
         }
         // Within the tolerance the goal is reached as well.
         let least = (turn.norm() - task.goal_tolerance) / turns.fastest;
-        if least > motion.duration { Self::TooSlow(least) } else { Self::NotFound }
+        if least > motion.duration.max(longest) { Self::TooSlow(least) } else { Self::NotFound }
     }
 
     /// The name used in JSON.
