@@ -59,6 +59,19 @@ fn tolerances_widen_the_goal() {
     assert_eq!(wide(planar(3, 1.0, [0.9, 1e-3, 0.0]), 2e-3), Reach::NotFound);
 }
 
+/// A motion in half the time that its limits allow does not count, wherever it ends.
+#[test]
+fn limits_are_kept_where_a_goal_is_reached() {
+    let task = Task { goal_tolerance: 3.0, ..planar(3, 1.0, [0.3, 0.0, 0.0]) };
+    let problem = Reorientation::new(Arc::new(task.clone()), 2, Accuracy::FINE);
+    let [shortest, half] = [1.0, 0.5].map(|share| {
+        let free = problem.assess(&[0.0; 6], None);
+        let motion = problem.assess(&[0.0; 6], Some(share * free.duration));
+        Reach::of(&task, &motion, LONGEST)
+    });
+    assert_eq!((shortest, half), (Reach::Reached, Reach::NotFound));
+}
+
 /// A base of a million times the inertia turns a million times as slowly. Momentum bounds the rate: all links lie within
 /// 2 m of the base's centre of mass, so they have about it an inertia of at most 15 kg (2 m)² + 0.6 kg m², and turn by 180°/s
 /// at most, 60°/s from each joint.

@@ -168,7 +168,7 @@ impl<F: SearchedFamily> Found<F> {
     }
 
     /// Warns where the goal is missed; says which variables are on walls of the box, where that may matter.
-    pub(super) fn warn(&self) {
+    pub(super) fn warn(&self, budget: u64) {
         let task = self.problem.task();
         let residual = self.assessment.residual().to_degrees();
         let is_reached = self.reach == Reach::Reached;
@@ -195,16 +195,23 @@ impl<F: SearchedFamily> Found<F> {
             Reach::TooSlow(seconds) => format!(
                 "which cannot be reached within {seconds:.0} s: joints at their largest rates do not turn the base faster"
             ),
+            Reach::NotFound if self.interrupted => return,
             Reach::NotFound => {
                 let advice = match task.family().spec().name() {
+                    _ if self.spent.evaluations >= budget => "a larger `--budget` may find one",
                     FamilyName::Spline => "another `--seed` or more `--pieces` may find one",
                     FamilyName::SinePolynomial => {
                         "`--family spline`, more terms or another optimiser, such as a hybrid, may find one"
                     }
                 };
-                format!("and no motion was found that reaches it; {advice}")
+                let missed = if self.assessment.residual() > task.task().goal_tolerance {
+                    "and no motion was found that reaches it"
+                } else {
+                    "but beyond limits or ranges, and no motion was found that keeps them"
+                };
+                format!("{missed}; {advice}")
             }
         };
-        note!("warning: the base ends {residual:.3}° from its goal, {why}");
+        note!("warning: the base ends {residual:.6}° from its goal, {why}");
     }
 }

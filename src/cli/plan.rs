@@ -37,7 +37,7 @@ pub(super) struct Plan {
     /// choice of `scp` where neither says
     #[arg(long, value_name = "NAME")]
     family: Option<FamilyName>,
-    /// Pieces of a spline, instead of the file's; 80 where neither file nor options name splines
+    /// Pieces of a spline, instead of the file's; 80 unless the file names a family
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(4..=1000))]
     pieces: Option<u16>,
     /// Degree of a spline, instead of the file's or 4: 3 has a constant jerk on each piece, 4 a continuous one, 5 a smooth one
@@ -218,7 +218,7 @@ impl Plan {
             say!("{file} by {}, seed {}", self.optimiser, self.seed);
             say!("{}", found.told(known, other));
         }
-        found.warn();
+        found.warn(self.budget);
         self.say_entry(found, task);
         self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
         if found.interrupted {

@@ -15,10 +15,13 @@ const SEED: u64 = 1;
 /// Below this share of the largest, a turn is none.
 const NOTHING: f64 = 1e-9;
 
+/// Limits and ranges are kept where the cost's penalty is no larger: an excess of 10⁻⁶.
+const KEPT: f64 = 1e-4;
+
 /// How a motion stands to the goal's attitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
-    /// It ends there, within the goal's tolerance.
+    /// It ends there, within the goal's tolerance, and keeps limits and ranges.
     Reached,
     /// It does not, and others may.
     NotFound,
@@ -44,7 +47,7 @@ impl Reach {
     /// needs longer than those, and than the motion itself, is [`TooSlow`](Self::TooSlow).
     pub fn of(task: &Task, motion: &Assessment, longest: f64) -> Self {
         if motion.residual() <= task.goal_tolerance {
-            return Self::Reached;
+            return if motion.penalty() <= KEPT { Self::Reached } else { Self::NotFound };
         }
         let turns = BaseTurns::of(task);
         let turn = (task.start.base.inverse() * task.goal.base).scaled_axis();
