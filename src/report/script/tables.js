@@ -9,13 +9,23 @@ const MORE_ROWS = 1000;
 /** A cell with more letters may be broken into lines. */
 const LONG_TEXT = 40;
 
+/** `toFixed` rounds what lies halfway between two numbers up; here it is rounded to the even digit, as in the other tables. */
+function fixed(number, places) {
+  const scaled = Math.abs(number) * 10 ** places;
+  const below = Math.floor(scaled);
+  // A binary number is halfway only where a power of five cancels.
+  const halfway = scaled === below + 0.5 && (2 * below + 1) % 5 ** places === 0;
+  const even = halfway && below % 2 === 0;
+  return (even ? (Math.sign(number) * below) / 10 ** places : number).toFixed(places);
+}
+
 /** A number as people read it: five significant digits, in plain notation where that is readable. */
 function significant(number) {
   if (!Number.isFinite(number)) return number === Infinity ? "∞" : "–";
   const magnitude = number === 0 ? 0 : Math.floor(Math.log10(Math.abs(number)));
   const [digits, exponent] = number.toExponential(3).split("e");
   return magnitude >= -4 && magnitude < 7
-    ? number.toFixed(Math.max(4 - magnitude, 0))
+    ? fixed(number, Math.max(4 - magnitude, 0))
     : `${digits}e${Number(exponent)}`;
 }
 
