@@ -7,8 +7,7 @@ use serde::Serialize;
 use super::motion::{AssessmentJson, ShapeJson, Told};
 use super::walls::Walls;
 use crate::reorientation::{
-    Accuracy, Assessment, BestKnown, Block, FamilyName, FamilySpec, Formulated, Reach,
-    SearchedFamily,
+    Assessment, BestKnown, Block, FamilyName, FamilySpec, Formulated, Reach, SearchedFamily,
 };
 use crate::trajectory::{Family, SinePolynomial};
 
@@ -28,8 +27,6 @@ pub(super) struct Found<F: Family> {
     pub(super) coefficients: Vec<f64>,
     pub(super) assessment: Assessment,
     pub(super) reach: Reach,
-    /// The longest motion that counts as looked for \[s\].
-    pub(super) longest: f64,
     /// Of families whose box is a choice.
     pub(super) walls: Option<Walls>,
     pub(super) spent: Spent,
@@ -42,7 +39,7 @@ pub(super) struct OtherFamily {
     terms: usize,
     t_f: f64,
     residual_deg: f64,
-    status: &'static str,
+    status: Reach,
 }
 
 #[derive(Debug, Serialize)]
@@ -52,7 +49,7 @@ pub(super) struct PlanJson<'a> {
     seed: u64,
     #[serde(flatten)]
     family: FamilySpec,
-    status: &'static str,
+    status: Reach,
     tolerance_deg: f64,
     least_time: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -74,7 +71,7 @@ impl OtherFamily {
             terms,
             t_f: found.assessment.duration,
             residual_deg: found.assessment.residual().to_degrees(),
-            status: found.reach.name(),
+            status: found.reach,
         }
     }
 }
@@ -83,24 +80,12 @@ impl fmt::Display for OtherFamily {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { terms, t_f, residual_deg, status } = self;
         write!(f, "sine polynomials with {terms} terms: {t_f:.6} s")?;
-        if *status == Reach::Reached.name() {
-            Ok(())
-        } else {
-            write!(f, ", {residual_deg:.3}° off")
-        }
+        if *status == Reach::Reached { Ok(()) } else { write!(f, ", {residual_deg:.3}° off") }
     }
 }
 
 impl<F: SearchedFamily> Found<F> {
-    /// The same motion, judged by another task over the same family.
-    pub(super) fn judged_by(self, problem: Formulated<F>) -> Self {
-        let assessment =
-            problem.task().with_accuracy(Accuracy::FINE).assess(&self.coefficients, None);
-        let reach = Reach::of(problem.task().task(), &assessment, self.longest);
-        Self { problem, assessment, reach, ..self }
-    }
-
-    /// The one that ends nearer to the goal, unless both reach it; has spent what both have.
+    /// The other one where it reaches the goal or ends nearer to it; has spent what both have.
     pub(super) fn or(self, other: Self) -> Self {
         let [own, more] = [self.spent, other.spent];
         let spent = Spent {
@@ -111,8 +96,9 @@ impl<F: SearchedFamily> Found<F> {
             seconds: own.seconds + more.seconds,
         };
         let interrupted = self.interrupted || other.interrupted;
-        let is_nearer = other.assessment.residual() < self.assessment.residual();
-        let found = if is_nearer { other } else { self };
+        let is_better = other.reach == Reach::Reached
+            || other.assessment.residual() < self.assessment.residual();
+        let found = if is_better { other } else { self };
         Self { spent, interrupted, ..found }
     }
 
@@ -130,7 +116,7 @@ impl<F: SearchedFamily> Found<F> {
             optimiser,
             seed,
             family: problem.family().spec(),
-            status: self.reach.name(),
+            status: self.reach,
             tolerance_deg: problem.task().goal_tolerance.to_degrees(),
             least_time: self.reach.least_time(),
             on_walls: self.walls.as_ref().map(Walls::names),
@@ -171,10 +157,9 @@ impl<F: SearchedFamily> Found<F> {
     pub(super) fn warn(&self, budget: u64) {
         let task = self.problem.task();
         let residual = self.assessment.residual().to_degrees();
-        let is_reached = self.reach == Reach::Reached;
-        if is_reached || self.reach == Reach::NotFound {
-            let told = self.walls.as_ref().and_then(|w| w.told((!is_reached).then_some(residual)));
-            if let Some(told) = told {
+        if matches!(self.reach, Reach::Reached | Reach::NotFound) {
+            let missed_by = (self.reach != Reach::Reached).then_some(residual);
+            if let Some(told) = self.walls.as_ref().and_then(|walls| walls.told(missed_by)) {
                 note!("{told}");
                 return;
             }

@@ -95,7 +95,8 @@ impl Plan {
                     Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
                 let mut found = {
                     let _bar = Bar::new(self.budget, watch());
-                    search(&settings, formulated, boxes.duration[1], self.seed, self.budget)?
+                    let longest = boxes.duration[1];
+                    search(&settings, &formulated, &formulated, longest, self.seed, self.budget)?
                 };
                 let walls =
                     Walls::of(&found.problem, &found.coefficients, found.assessment.duration);
@@ -170,7 +171,7 @@ impl Plan {
             other => other.clone(),
         };
         let own = Formulated::free_form(Arc::new(problem.clone())).map_err(&refused)?;
-        let mut found = search(&settings, own.clone(), longest, self.seed, self.budget)?;
+        let mut found = search(&settings, &own, &own, longest, self.seed, self.budget)?;
         let mut time_weight = 1.0 - problem.task().base_weight;
         for round in 1..=MORE_ROUNDS {
             let left = self.budget - found.spent.evaluations;
@@ -182,9 +183,8 @@ impl Plan {
             let (family, accuracy) = (problem.family().clone(), problem.accuracy());
             let demanding = Reorientation::over(Arc::new(task), family, accuracy);
             let formulated = Formulated::free_form(Arc::new(demanding)).map_err(&refused)?;
-            let again =
-                search(&settings, formulated, longest, self.seed.wrapping_add(round), left)?;
-            found = found.or(again.judged_by(own.clone()));
+            let seed = self.seed.wrapping_add(round);
+            found = found.or(search(&settings, &formulated, &own, longest, seed, left)?);
         }
         Ok(found)
     }
@@ -195,9 +195,8 @@ impl Plan {
         let terms = problem.family().terms();
         let formulated = Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes).ok()?;
         let scp = Scp { starts: NonZeroUsize::new(OTHER_STARTS), ..Scp::default() };
-        let found =
-            search(&Settings::Scp(scp), formulated, boxes.duration[1], self.seed, self.budget)
-                .ok()?;
+        let (scp, longest) = (Settings::Scp(scp), boxes.duration[1]);
+        let found = search(&scp, &formulated, &formulated, longest, self.seed, self.budget).ok()?;
         (!found.interrupted).then(|| OtherFamily::new(terms, &found))
     }
 
@@ -254,16 +253,17 @@ impl Plan {
     }
 }
 
-/// Runs an optimiser once.
+/// Runs an optimiser once; `problem`, of which `searched` may be one with other weights, judges what it finds.
 fn search<F: Family>(
     settings: &Settings,
-    problem: Formulated<F>,
+    searched: &Formulated<F>,
+    problem: &Formulated<F>,
     longest: f64,
     seed: u64,
     budget: u64,
 ) -> Result<Found<F>, CliError> {
     let watch = watch();
-    let mut oracle = Oracle::new(&problem, budget, &watch).parallel();
+    let mut oracle = Oracle::new(searched, budget, &watch).parallel();
     let started = Instant::now();
     let stop = settings.optimiser().minimise(&mut oracle, &mut Rng::new(seed));
     let seconds = started.elapsed().as_secs_f64();
@@ -287,7 +287,8 @@ fn search<F: Family>(
         seconds,
     };
     let reach = Reach::of(problem.task().task(), &assessment, longest);
-    Ok(Found { problem, coefficients, assessment, reach, longest, walls: None, spent, interrupted })
+    let problem = problem.clone();
+    Ok(Found { problem, coefficients, assessment, reach, walls: None, spent, interrupted })
 }
 
 fn find_optimiser(name: &str) -> Result<Settings, CliError> {

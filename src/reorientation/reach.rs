@@ -1,6 +1,7 @@
 //! Whether a motion brings the base to its goal, and if it does not, whether any can.
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use serde::{Serialize, Serializer};
 
 use super::fitness::Assessment;
 use crate::momentum::base_twist;
@@ -40,6 +41,13 @@ pub enum Block {
     OneJoint,
     /// All joints turn the base about the same axis, and the goal is a turn about another.
     OneAxis,
+}
+
+/// By its name.
+impl Serialize for Reach {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
 }
 
 impl Reach {
@@ -98,8 +106,7 @@ impl BaseTurns {
             for (joint, limits) in task.limits.0.iter().enumerate() {
                 let mut rates = vec![0.0; joints];
                 rates[joint] = limits[0];
-                let angular = base_twist(&task.robot, &at, &rates).angular;
-                let turn = Vector3::new(angular.x, angular.y, angular.z);
+                let turn: Vector3<f64> = base_twist(&task.robot, &at, &rates).angular.into();
                 speed += turn.norm();
                 turns.moment += turn * turn.transpose();
             }

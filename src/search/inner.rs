@@ -71,16 +71,14 @@ impl Oracle<'_> {
             (own, outcome)
         };
         let runs: Vec<_> = starts.par_iter().map(run).collect();
-        let mut outcomes = Vec::new();
+        let mut stopped = Ok(());
         for (own, outcome) in runs {
-            found.extend(own.best_within.clone());
-            self.join(own);
-            outcomes.push(outcome);
+            found.extend(self.join(own));
+            if stopped.is_ok() && outcome != Err(Stop::BudgetSpent) {
+                stopped = outcome;
+            }
         }
-        let stopped =
-            |outcome: &Result<(), Stop>| matches!(outcome, Err(stop) if *stop != Stop::BudgetSpent);
-        outcomes.into_iter().find(stopped).unwrap_or(Ok(()))?;
-        Ok(found)
+        stopped.map(|()| found)
     }
 
     /// An oracle for a search at the same time as others.
@@ -93,8 +91,8 @@ impl Oracle<'_> {
         }
     }
 
-    /// Takes what another oracle has spent and found as spent and found after its own.
-    fn join(&mut self, other: Self) {
+    /// Takes what another oracle has spent and found as spent and found after its own; gives the best of its search.
+    fn join(&mut self, other: Self) -> Option<Best> {
         let before = self.evaluations;
         self.evaluations += other.evaluations;
         self.linearisations += other.linearisations;
@@ -103,25 +101,22 @@ impl Oracle<'_> {
         self.conic_failures += other.conic_failures;
         self.in_problem += other.in_problem;
         self.first_feasible = self.first_feasible.or(other.first_feasible.map(|at| before + at));
-        if let Some(own) = other.best_within {
-            self.add_to_search(own);
-        }
-        let is_better = |cost: f64, best: &Option<Best>| {
-            best.as_ref().is_none_or(|best| cost < best.evaluation.cost)
-        };
-        let improves = |point: &TracePoint| is_better(point.best.cost, &self.best);
-        let better = other.trace.into_iter().filter(improves);
+        let is_better = |cost: f64| Best::is_above(self.best.as_ref(), cost);
+        let better = other.trace.into_iter().filter(|point| is_better(point.best.cost));
         self.trace.extend(
             better.map(|point| TracePoint { evaluation: before + point.evaluation, ..point }),
         );
-        if let Some(best) = other.best.filter(|best| is_better(best.evaluation.cost, &self.best)) {
+        if let Some(best) = other.best.filter(|best| is_better(best.evaluation.cost)) {
             self.best = Some(best);
         }
+        if let Some(own) = other.best_within.clone() {
+            self.add_to_search(own);
+        }
+        other.best_within
     }
 
     fn add_to_search(&mut self, found: Best) {
-        let is_better = |best: &Best| found.evaluation.cost < best.evaluation.cost;
-        if self.best_within.as_ref().is_none_or(is_better) {
+        if Best::is_above(self.best_within.as_ref(), found.evaluation.cost) {
             self.best_within = Some(found);
         }
     }

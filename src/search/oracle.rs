@@ -69,6 +69,13 @@ pub struct Best {
     pub evaluation: Evaluation,
 }
 
+impl Best {
+    /// Whether a cost is lower than the best so far, or the first.
+    pub(super) fn is_above(best: Option<&Self>, cost: f64) -> bool {
+        best.is_none_or(|best| cost < best.evaluation.cost)
+    }
+}
+
 /// One row of a run's trace: an improvement, or the last evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TracePoint {
@@ -102,6 +109,7 @@ pub struct Oracle<'a> {
     /// The best of the search that is [`within`](Self::within), a point of the problem that is asked.
     pub(super) best_within: Option<Best>,
     pub(super) trace: Vec<TracePoint>,
+    /// Whether searches [`from_each`](Self::from_each) of several points run at the same time.
     pub(super) is_parallel: bool,
 }
 
@@ -396,19 +404,16 @@ impl<'a> Oracle<'a> {
     }
 
     fn record(&mut self, x: &[f64], evaluation: Evaluation) {
-        let lower = |best: &Option<Best>| {
-            best.as_ref().is_none_or(|best| evaluation.cost < best.evaluation.cost)
-        };
         if !evaluation.cost.is_finite() {
             return;
         }
         if self.first_feasible.is_none() && evaluation.violation <= 0.0 {
             self.first_feasible = Some(self.evaluations);
         }
-        if lower(&self.best_within) {
+        if Best::is_above(self.best_within.as_ref(), evaluation.cost) {
             self.best_within = Some(Best { x: x.to_vec(), evaluation });
         }
-        if lower(&self.best) {
+        if Best::is_above(self.best.as_ref(), evaluation.cost) {
             let levels = self.coarser.iter().rev();
             let x = levels.fold(x.to_vec(), |x, coarse| coarse.prolong(&x));
             self.best = Some(Best { x, evaluation });

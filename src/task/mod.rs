@@ -27,7 +27,7 @@ pub struct Task {
     pub limits: Limits,
     /// `K_b`, the weight of the base's attitude; time weighs `K_t = 1 − K_b`.
     pub base_weight: f64,
-    /// How far from its goal the base may end where the goal is a demand \[rad\]; costs do not follow from it.
+    /// How far from its goal the base may end where the goal is a demand \[rad\]; the cost does not depend on it.
     pub goal_tolerance: f64,
 }
 

@@ -143,6 +143,11 @@ fn plan_says_whether_the_goal_is_reached() {
     let wide = json(&folder, &["plan", "wide.toml", "--json"]);
     assert_eq!(wide["status"], "reached");
     near(&wide["tolerance_deg"], 30.0, 1e-12);
+    // The goal is a demand, whatever it weighs, and the cost that is told is the task's own: here the duration.
+    let folder = folder.with("weightless.toml", "[task.weights]\nbase = 0\n");
+    let weightless = json(&folder, &["plan", "weightless.toml", "--pieces", "20", "--json"]);
+    assert_eq!(weightless["status"], "reached");
+    near(&weightless["j"], weightless["t_f"].as_f64().unwrap(), 1e-9);
     let output = folder.run(&["plan", "start.toml"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("goal alone"), "{}", stderr(&output));

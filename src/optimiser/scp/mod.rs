@@ -153,11 +153,10 @@ impl Scp {
         }
         // Smaller weights than the problem's own would lead away from where an end has brought the norms.
         let onward = Self { first_weight: f64::INFINITY, ..self.clone() };
-        let (settings, points) = match ends {
+        let (settings, points): (_, Vec<Vec<f64>>) = match ends {
             Some(ends) => (&onward, ends.into_iter().map(|end| end.x).collect()),
             None => (self, (0..starts).map(|k| Self::random_start(oracle, rng, k)).collect()),
         };
-        let points: Vec<Vec<f64>> = points;
         let mut ends =
             oracle.from_each(&points, |oracle, x| settings.follow(oracle, x).map(drop))?;
         ends.sort_by(|a, b| a.evaluation.cost.total_cmp(&b.evaluation.cost));
