@@ -1,5 +1,5 @@
 #!/bin/sh
-# Runs the experiments of the gallery, and copies their pictures and a picture of the page to docs/gallery.
+# Runs the experiments of the gallery and of docs/free-form.md, and copies their pictures and a picture of the page to docs/gallery.
 # Needs `driftless` on the path; the picture of the page needs Python 3.11 or later, PyPI and Chromium, too.
 #   docs/gallery.sh [RESULTS]    # folder of the results; what is stored there is not run again
 set -eu
@@ -7,7 +7,8 @@ cd "$(dirname "$0")/.."
 results=${1:-results}
 gallery=docs/gallery
 
-for experiment in default functions poses free-form jerk-sweep weight-sweep terms-sweep; do
+for experiment in default functions poses free-form jerk-sweep weight-sweep terms-sweep \
+    pieces valleys reach; do
     driftless run "experiments/$experiment.toml" --out "$results/$experiment" --quiet
 done
 
@@ -16,11 +17,14 @@ for picture in \
     poses/convergence.svg poses/final-costs.svg \
     poses/running-time-distribution.svg poses/expected-running-time.svg \
     functions/performance-profiles.svg functions/data-profiles.svg \
-    poses/critical-difference.svg functions/effect-sizes.svg free-form/dimensions.svg \
+    poses/critical-difference.svg functions/effect-sizes.svg free-form/dimensions.svg pieces/pieces-sweep.svg \
     jerk-sweep/jerk-sweep.svg weight-sweep/weight-sweep.svg terms-sweep/terms-sweep.svg weight-sweep/pareto.svg \
     default/snapshots.svg default/joint-angles.svg default/joint-derivatives.png default/base-attitude.svg; do
     cp "$results/${picture%/*}/figures/${picture#*/}" "$gallery"
 done
+
+cp "$results/valleys/figures/final-costs.png" "$gallery/valleys.png"
+cp "$results/reach/figures/final-costs.png" "$gallery/reach.png"
 
 venv=target/gallery/venv
 [ -x "$venv/bin/python" ] || python3 -m venv "$venv"

@@ -8,10 +8,10 @@ use driftless::momentum::base_twist;
 use driftless::optimiser::{Ending, Optimiser as _, Scp};
 use driftless::reorientation::{Accuracy, Formulated, Reorientation, TaskFile};
 use driftless::robot::Robot;
-use driftless::search::{LinearLimit, Oracle, Problem as _, Rng, Stop, Watch};
+use driftless::search::{Bend, LinearLimit, Oracle, Problem as _, Rng, Stop, Watch};
 use driftless::task::Task;
 use driftless::trajectory::{Curve as _, Family as _, Spline};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{DVector, Quaternion, UnitQuaternion, Vector3};
 
 fn paper() -> Arc<Task> {
     let document = TaskFile::paper();
@@ -121,6 +121,34 @@ fn limits_and_slopes_are_those_of_the_cost() {
                     assert!((found - slope).abs() < 1e-7 * size, "{found} {slope}");
                 }
             }
+        }
+    }
+}
+
+/// How the error bends is right to a few digits: along each direction it is the second difference of the error, of which two
+/// evaluations apart from it tell.
+#[test]
+fn bends_are_second_differences_of_the_error() {
+    let task = paper();
+    for (degree, pieces) in [(3, 20), (4, 40), (5, 80)] {
+        let problem = free_form(&task, pieces, degree);
+        let timed = problem.timed().unwrap();
+        let x = timed.start(&mut Rng::new(3), 1.0);
+        let bends = timed.bends(&x).unwrap();
+        assert_eq!(bends.len(), 8 * task.robot.joint_count());
+        let at = |direction: &DVector<f64>, h: f64| {
+            let there = DVector::from_column_slice(&x) + direction * h;
+            timed.error(there.as_slice()).unwrap().value
+        };
+        let here = timed.error(&x).unwrap().value;
+        let pair = |bend: &Bend| {
+            let (d, h) = (&bend.direction, 1e-3);
+            ((at(d, h) + at(d, -h) - &here * 2.0) / (h * h), &bend.change * d)
+        };
+        let pairs: Vec<_> = bends.iter().map(pair).collect();
+        let largest = pairs.iter().map(|(found, _)| found.amax()).fold(0.0, f64::max);
+        for (found, told) in &pairs {
+            assert!((found - told).amax() < 0.02 * largest, "{found} {told}");
         }
     }
 }

@@ -19,7 +19,7 @@ use driftless::trajectory::Spline;
 const REACHED_DEG: f64 = 1e-6;
 
 /// Durations that differ by less than this share are one.
-const SAME: f64 = 1e-5;
+const SAME: f64 = 1e-4;
 
 /// One start, followed to its end.
 struct Run {

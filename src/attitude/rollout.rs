@@ -41,7 +41,11 @@ pub struct Rollout<F: Family> {
 impl<F: Family> Rollout<F> {
     /// With so many Magnus steps, rounded up to whole panels.
     pub fn new(family: &F, steps: usize) -> Self {
-        let panels = family.panels(steps.div_ceil(STEPS));
+        Self::of_panels(family, family.panels(steps.div_ceil(STEPS)))
+    }
+
+    /// With so many panels, whether or not paths are smooth in each. Where they are not, a few digits are right.
+    pub fn of_panels(family: &F, panels: usize) -> Self {
         let places = nodes();
         let times = (0..panels).step_by(MOST).flat_map(|first| {
             places.into_iter().flat_map(move |place| {

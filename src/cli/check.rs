@@ -67,7 +67,7 @@ impl Check {
                 print_resolved("motion to replay", &file)?;
             }
             Kind::Task => {
-                let file = TaskFile::read(&document)?;
+                let file = TaskFile::read(&document)?.planned();
                 let problem = file.problem(&document)?;
                 warn_of(&problem.task().robot);
                 print_resolved("task", &file.resolved(&problem))?;

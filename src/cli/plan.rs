@@ -65,9 +65,6 @@ const SPLINE_STARTS: usize = 20;
 /// Share of J that `scp` is content to miss there.
 const SPLINE_TOLERANCE: f64 = 1e-6;
 
-/// Pieces of a spline where neither file nor options say.
-const PIECES: usize = 80;
-
 /// How often more starts are followed where no motion reaches the goal, and by how much less time weighs each time.
 const MORE_ROUNDS: u64 = 2;
 const LESS_TIME: f64 = 100.0;
@@ -127,8 +124,8 @@ impl Plan {
         // Other optimisers get nowhere among hundreds of variables.
         let is_spline =
             matches!(settings, Settings::Scp(_)) || self.pieces.is_some() || self.degree.is_some();
-        if !table.states_family() && is_spline {
-            table = table.with_family(FamilyName::Spline).with_pieces(Spanned::new(0..0, PIECES));
+        if is_spline {
+            table = table.planned();
         }
         if let Some(family) = self.family {
             table = table.with_family(family);

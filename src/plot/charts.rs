@@ -94,13 +94,11 @@ impl Maker<'_> {
             );
             self.add("dimensions", "Number of variables", &caption, "dimensions", figure);
         }
-        // One optimiser on many instances is what sweeps are about.
-        let is_field = self.plan.optimisers.len() > 1 || self.plan.instances.len() == 1;
-        if let Some(frame) = self.frame("runs").filter(|_| is_field) {
+        if let Some(frame) = self.frame("runs") {
             let figure = comparison::final_costs(frame, &self.looks, symbol)?;
             let caption = format!(
                 "Final {symbol} of all runs, certified: quartiles as a box, the least and the largest as whiskers, single \
-                 runs as points where there are thirty at most. Runs that failed are counted at the end, \
+                 runs as points where they are few. Runs that failed are counted at the end, \
                  costs below 10⁻¹⁰ stand at the beginning."
             );
             self.add("final-costs", "Final costs", &caption, "runs", figure);

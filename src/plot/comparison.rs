@@ -15,21 +15,24 @@ use crate::figure::{Figure, FigureError};
 
 /// Final costs below are drawn at the axis's lower end.
 const LOWEST: f64 = 1e-10;
-/// Most runs of a box that are drawn one by one.
+/// Most runs of a box that are drawn one by one, and where there is one optimiser alone.
 const MOST_POINTS: usize = 30;
+const MOST_POINTS_ALONE: usize = 200;
 /// Costs further apart than this have a logarithmic axis.
 const WIDE: f64 = 8.0;
 /// Half the least width of an axis, as a share of the costs.
 const NARROW: f64 = 2e-3;
-/// Height of an optimiser's line \[mm\].
+/// Height of a line \[mm\], and where there is one optimiser alone.
 const ROW: f64 = 4.6;
+const ROW_ALONE: f64 = 9.0;
 /// Room for the number of failed runs, as a share of the axis.
 const FOR_FAILURES: f64 = 0.45;
 /// Longest name in a heat map \[mm\].
 const LONGEST_NAME: f64 = 48.0;
 
 /// The final costs of all runs, from the table `runs`: quartiles as a box, least and largest as whiskers,
-/// and single runs where they are few; failed ones are counted at the end.
+/// and single runs where they are few; failed ones are counted at the end. A panel per group with a line per optimiser, or
+/// for a single optimiser one panel with a line per group.
 pub(super) fn final_costs(
     frame: &DataFrame,
     looks: &Looks,
@@ -37,35 +40,55 @@ pub(super) fn final_costs(
 ) -> Result<Option<Figure>, FigureError> {
     let (groups, optimisers) = (texts(frame, "group")?, texts(frame, "optimiser")?);
     let costs = reals(frame, &format!("best {symbol}"))?;
-    let mut panels: Vec<&String> = groups.iter().collect();
-    panels.sort();
-    panels.dedup();
-    panels.sort_by_key(|group| groups.iter().position(|g| g == *group));
-    if panels.len() > MOST_PANELS {
+    let mut names: Vec<&String> = groups.iter().collect();
+    names.sort();
+    names.dedup();
+    names.sort_by_key(|group| groups.iter().position(|g| g == *group));
+    if names.len() > MOST_PANELS {
         return Ok(None);
     }
     let labels: Vec<&str> = looks.labels().collect();
-    let panel = |group: &String| {
-        let of = |label: &str| -> Vec<f64> {
-            let rows = (0..costs.len()).filter(|&i| groups[i] == *group && optimisers[i] == label);
-            let mut costs: Vec<f64> = rows.map(|i| costs[i]).collect();
-            costs.sort_by(f64::total_cmp);
-            costs
-        };
-        let rows: Vec<Vec<f64>> = labels.iter().map(|label| of(label)).collect();
-        let x = cost_axis(&format!("final {symbol}"), &rows);
-        let marks = rows.iter().zip(&labels).enumerate();
-        let marks = marks.flat_map(|(row, (costs, label))| {
-            let failed = costs.iter().filter(|cost| cost.is_infinite()).count();
-            let (ended, stroke) = (&costs[..costs.len() - failed], looks.stroke(label));
-            boxed(row as f64, ended, stroke).into_iter().chain(failures(row as f64, failed, &x))
-        });
-        let names: Vec<String> = labels.iter().map(|&label| label.to_owned()).collect();
-        let marks = marks.collect();
-        Panel::new(x, Axis::names("", &names).reversed(), marks).titled(&looks.title(group))
+    let of = |group: &String, label: &str| -> Vec<f64> {
+        let rows = (0..costs.len()).filter(|&i| groups[i] == *group && optimisers[i] == label);
+        let mut costs: Vec<f64> = rows.map(|i| costs[i]).collect();
+        costs.sort_by(f64::total_cmp);
+        costs
     };
-    let mut figure = Figure::grid(panels.into_iter().map(panel).collect());
-    figure.height = ROW * labels.len() as f64;
+    let alone = labels.len() == 1 && names.len() > 1;
+    // One run on each of many instances is what sweeps are about.
+    if alone && costs.len() <= names.len() {
+        return Ok(None);
+    }
+    let most_points = if alone { MOST_POINTS_ALONE } else { MOST_POINTS };
+    let panel = |lines: Vec<(String, Vec<f64>, Stroke)>| {
+        let rows: Vec<Vec<f64>> = lines.iter().map(|(_, costs, _)| costs.clone()).collect();
+        let x = cost_axis(&format!("final {symbol}"), &rows);
+        let marks = lines.iter().enumerate().flat_map(|(row, (_, costs, stroke))| {
+            let failed = costs.iter().filter(|cost| cost.is_infinite()).count();
+            let ended = &costs[..costs.len() - failed];
+            let boxed = boxed(row as f64, ended, *stroke, most_points);
+            boxed.into_iter().chain(failures(row as f64, failed, &x))
+        });
+        let marks = marks.collect();
+        let names: Vec<String> = lines.into_iter().map(|(name, ..)| name).collect();
+        Panel::new(x, Axis::names("", &names).reversed(), marks)
+    };
+    let (panels, height) = if alone {
+        let line = |group: &&String| {
+            let stroke = looks.stroke(labels[0]);
+            (fitted(&looks.title(group), LONGEST_NAME), of(group, labels[0]), stroke)
+        };
+        (vec![panel(names.iter().map(line).collect())], ROW_ALONE * names.len() as f64)
+    } else {
+        let lines = |group: &String| -> Vec<_> {
+            let line = |&label: &&str| (label.to_owned(), of(group, label), looks.stroke(label));
+            labels.iter().map(line).collect()
+        };
+        let panels = names.iter().map(|group| panel(lines(group)).titled(&looks.title(group)));
+        (panels.collect(), ROW * labels.len() as f64)
+    };
+    let mut figure = Figure::grid(panels);
+    figure.height = height;
     Ok(Some(figure))
 }
 
@@ -91,13 +114,13 @@ fn failures(row: f64, failed: usize, x: &Axis) -> Option<Mark> {
 }
 
 /// A box, with single runs where they are few; finite costs in order.
-fn boxed(row: f64, costs: &[f64], stroke: Stroke) -> Vec<Mark> {
+fn boxed(row: f64, costs: &[f64], stroke: Stroke, most_points: usize) -> Vec<Mark> {
     if costs.is_empty() {
         return Vec::new();
     }
     let five = [0.0, 0.25, 0.5, 0.75, 1.0].map(|q| quantile(costs, q).max(LOWEST));
     let mut marks = vec![Mark::Box { stroke, height: row, five }];
-    if costs.len() <= MOST_POINTS {
+    if costs.len() <= most_points {
         let aside = |i: usize| 0.18 * ((i as f64 * 0.618).fract() * 2.0 - 1.0);
         let points = costs.iter().enumerate().map(|(i, cost)| [cost.max(LOWEST), row + aside(i)]);
         let stroke = Stroke { hollow: true, ..stroke };

@@ -114,8 +114,8 @@ fn profile(time: &str, label: &str) -> Figure {
     profiles(&frame.unwrap(), &Looks::of(&field), time, label).unwrap().unwrap()
 }
 
-fn costs(spread: f64) -> Figure {
-    let field = field(8);
+fn costs(count: usize, spread: f64) -> Figure {
+    let field = field(count);
     let labels = labels(&field);
     let seeds: Vec<f64> = (0..15).map(f64::from).collect();
     let rows = || rows(&["a", "b"], &labels, &seeds);
@@ -189,8 +189,9 @@ fn charts() -> Vec<(&'static str, Figure)> {
         ("expected-running-time", expectation()),
         ("performance-profiles", profile("ratio", "ratio to the fewest evaluations")),
         ("data-profiles", profile("simplex gradients", "simplex gradients")),
-        ("final-costs", costs(0.05)),
-        ("final-costs-wide", costs(3.0)),
+        ("final-costs", costs(8, 0.05)),
+        ("final-costs-wide", costs(8, 3.0)),
+        ("final-costs-alone", costs(1, 0.5)),
         ("effect-sizes", effects(5)),
         ("effect-sizes-crowd", effects(20)),
         ("critical-difference", differences(4)),

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, UnitQuaternion, Vector3};
 
 use super::fitness::Reorientation;
 use super::measure::Tables;
-use crate::attitude::{RotationCurvature, RotationSlopes};
+use crate::attitude::{Rollout, RotationCurvature, RotationSlopes};
 use crate::lanes::{LaneWork, Lanes};
 use crate::search::{
     ErrorSlopes, Failure, LinearLimits, Linearisation, Multipliers, Piece, PieceId, TimedWeights,
@@ -18,7 +18,11 @@ impl<F: Family> Reorientation<F> {
     /// The time-free cost's parts: the vector part of the base's error, and the duration that each
     /// local peak of rate, acceleration and jerk asks for.
     pub(super) fn linearise(&self, coefficients: &[f64]) -> Linearisation {
-        let slopes = self.width().run(Slopes { problem: self, coefficients });
+        let slopes = self.width().run(Slopes {
+            problem: self,
+            coefficients,
+            rollout: &self.tables().rollout,
+        });
         let samples = self.samples(coefficients);
         let limits = &self.task().limits;
         let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
@@ -69,7 +73,16 @@ impl<F: Family> Reorientation<F> {
 
     /// The base's error, for families whose derivatives are linear in their coefficients.
     pub(super) fn error_slopes(&self, coefficients: &[f64]) -> ErrorSlopes {
-        let net = self.width().run(Slopes { problem: self, coefficients });
+        self.error_slopes_by(&self.tables().rollout, coefficients)
+    }
+
+    /// The same, right to a few digits.
+    pub(super) fn rough_error_slopes(&self, coefficients: &[f64]) -> ErrorSlopes {
+        self.error_slopes_by(&self.tables().rough, coefficients)
+    }
+
+    fn error_slopes_by(&self, rollout: &Rollout<F>, coefficients: &[f64]) -> ErrorSlopes {
+        let net = self.width().run(Slopes { problem: self, coefficients, rollout });
         let (error, slopes) = self.base_error(&net);
         ErrorSlopes {
             value: DVector::from_column_slice(error.as_slice()),
@@ -156,6 +169,7 @@ impl<F: Family> LaneWork for Sampling<'_, F> {
 struct Slopes<'a, F: Family> {
     problem: &'a Reorientation<F>,
     coefficients: &'a [f64],
+    rollout: &'a Rollout<F>,
 }
 
 impl<F: Family> LaneWork for Slopes<'_, F> {
@@ -164,7 +178,7 @@ impl<F: Family> LaneWork for Slopes<'_, F> {
     #[inline(always)]
     fn run<T: Lanes>(self) -> RotationSlopes {
         let (robot, family) = (&self.problem.task().robot, self.problem.family());
-        self.problem.tables().rollout.slopes::<T>(robot, family, self.coefficients)
+        self.rollout.slopes::<T>(robot, family, self.coefficients)
     }
 }
 

@@ -100,6 +100,7 @@ impl TaskKeys {
             let message = "found a `[task]` beside the tasks of the sweep, expected one of them";
             return Err(document.error_at(place, message, None));
         }
+        let trajectory = if sweep.family.is_empty() { trajectory.implied() } else { trajectory };
         let own = [trajectory.family()];
         let families = if sweep.family.is_empty() { &own[..] } else { &sweep.family };
         for Sizes { name, family, values, .. } in sweep.sizes() {

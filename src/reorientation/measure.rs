@@ -18,10 +18,15 @@ pub(super) struct Tables<F: Family> {
     arm: Arm,
     pub(super) rollout: Rollout<F>,
     pub(super) sampler: F::Sampler,
+    /// For differences that need a few digits only.
+    pub(super) rough: Rollout<F>,
     pub(super) midpoints: Midpoints<F>,
     /// The joints' ranges.
     pub(super) ranges: Vec<[f64; 2]>,
 }
+
+/// Panels along the path, of six nodes each, where a few digits suffice.
+const ROUGH_PANELS: usize = 8;
 
 /// Midpoint steps along the path for the curvature.
 const CURVATURE_STEPS: usize = 12;
@@ -31,6 +36,7 @@ impl<F: Family> Tables<F> {
         Arc::new(Self {
             arm: Arm::new(&task.robot),
             rollout: Rollout::new(family, accuracy.attitude_steps),
+            rough: Rollout::of_panels(family, ROUGH_PANELS),
             sampler: family.sampler(accuracy.peak_intervals),
             midpoints: Midpoints::new(family, CURVATURE_STEPS),
             ranges: task.robot.joints().map(|joint| joint.range).collect(),

@@ -97,6 +97,7 @@ impl ReplayFile {
     /// Reads a file; the task it leaves out is the paper's.
     pub fn read(document: &Document) -> Result<Self, InputError> {
         let Self { task, trajectory, motion } = document.parse_over(&[DEFAULTS])?;
+        let trajectory = trajectory.implied();
         trajectory.check_keys(document)?;
         let rows = motion.get_ref().coefficients.as_ref().map(Spanned::get_ref);
         let free = rows.and_then(|rows| rows.first()).map_or(0, Vec::len);

@@ -25,6 +25,9 @@ const MOST_TERMS: usize = 16;
 /// Pieces that a spline may have.
 const PIECES: RangeInclusive<usize> = 4..=1000;
 
+/// Pieces of the splines that `plan` searches, where nothing says.
+const PLANNED_PIECES: usize = 80;
+
 /// Degrees that a spline may have.
 const DEGREES: RangeInclusive<usize> = 3..=5;
 
@@ -127,9 +130,10 @@ impl TaskFile {
 
     /// Reads a file; what it leaves out is the paper's.
     pub fn read(document: &Document) -> Result<Self, InputError> {
-        let file: Self = document.parse_over(&[DEFAULTS])?;
-        file.trajectory.check_keys(document)?;
-        Ok(file)
+        let Self { task, trajectory } = document.parse_over(&[DEFAULTS])?;
+        let trajectory = trajectory.implied();
+        trajectory.check_keys(document)?;
+        Ok(Self { task, trajectory })
     }
 
     /// The task over the file's family, and where to search it.
@@ -137,10 +141,16 @@ impl TaskFile {
         self.trajectory.build(Arc::new(self.task.build(document)?), document)
     }
 
-    /// The same with the box and the accuracy of its problem written out.
+    /// The same over the family that `plan` searches.
+    #[must_use]
+    pub fn planned(self) -> Self {
+        Self { trajectory: self.trajectory.planned(), ..self }
+    }
+
+    /// The same with the goal's tolerance, and the box and the accuracy of its problem, written out.
     #[must_use]
     pub fn resolved(self, problem: &TaskProblem) -> Self {
-        Self { trajectory: self.trajectory.resolved(problem), ..self }
+        Self { task: self.task.resolved(), trajectory: self.trajectory.resolved(problem) }
     }
 
     /// The task over sine polynomials, its search settings and its boxes; a file that names another family is an error.
@@ -165,6 +175,20 @@ impl TrajectoryTable {
     pub fn states_family(&self) -> bool {
         let mut spans = self.own_keys().map(|(_, _, span)| span).into_iter();
         !self.family.span().is_empty() || spans.any(|span| !span.is_empty())
+    }
+
+    /// The same over splines fit for a single plan, unless the file names a family.
+    #[must_use]
+    pub fn planned(self) -> Self {
+        let names_sines = self.states_family() && self.family() == FamilyName::SinePolynomial;
+        if names_sines || !self.family.span().is_empty() {
+            self
+        } else if self.pieces.span().is_empty() {
+            let pieces = Spanned::new(0..0, PLANNED_PIECES);
+            self.with_family(FamilyName::Spline).with_pieces(pieces)
+        } else {
+            self.with_family(FamilyName::Spline)
+        }
     }
 
     /// The same over another family.
@@ -244,6 +268,16 @@ impl TrajectoryTable {
             ("pieces", Spline, self.pieces.span()),
             ("degree", Spline, self.degree.span()),
         ]
+    }
+
+    /// The same over the family that its keys imply, unless it names one.
+    #[must_use]
+    pub(super) fn implied(self) -> Self {
+        let keys = self.own_keys();
+        match keys.into_iter().find(|(_, _, span)| !span.is_empty()) {
+            Some((_, family, _)) if self.family.span().is_empty() => self.with_family(family),
+            _ => self,
+        }
     }
 
     /// Whether all keys that the file states are of the families that are searched.

@@ -87,10 +87,11 @@ impl<F: Family> Timed for Formulated<F> {
 
     /// Along the first sines of every joint's variables: rougher directions are held still by the limits.
     fn bends(&self, x: &[f64]) -> Result<Vec<Bend>, Failure> {
-        let here = self.task().error_slopes(x).slopes;
+        let here = self.task().rough_error_slopes(x).slopes;
         let along = |direction: DVector<f64>| {
             let there = DVector::from_column_slice(x) + &direction * DIFFERENCE;
-            let change = (self.task().error_slopes(there.as_slice()).slopes - &here) / DIFFERENCE;
+            let change =
+                (self.task().rough_error_slopes(there.as_slice()).slopes - &here) / DIFFERENCE;
             Bend { direction, change }
         };
         Ok(smooth_directions(self.task().family()).map(along).collect())

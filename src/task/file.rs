@@ -71,6 +71,14 @@ impl TaskTable {
         }
     }
 
+    /// The same with the goal's tolerance written out.
+    #[must_use]
+    pub fn resolved(mut self) -> Self {
+        let default = || Spanned::new(0..0, Positive(TOLERANCE_DEG));
+        self.goal.tolerance_deg.get_or_insert_with(default);
+        self
+    }
+
     /// The robot, read from its file unless it comes with the program.
     pub fn robot(&self, document: &Document) -> Result<Robot, InputError> {
         find_robot(&self.robot, document)

@@ -260,6 +260,31 @@ fn without_last_digits(text: &str) -> String {
     text.chars().filter(|&c| is_kept(c)).collect()
 }
 
+/// A key that one family alone has names it, in files of tasks and of experiments.
+#[test]
+fn keys_imply_their_family() {
+    let trajectory = "[trajectory]\npieces = 12\n";
+    let experiment = format!("name = 'e'\nseeds = 1\n{trajectory}[[optimiser]]\nrandom = {{}}\n");
+    let folder = Folder::new()
+        .with("task.toml", trajectory)
+        .with("experiment.toml", experiment)
+        .with("sines.toml", "[trajectory]\nterms = 3\n")
+        .with("both.toml", "[trajectory]\npieces = 12\nterms = 3\n");
+    for (file, expected) in [
+        ("task.toml", "family = \"spline\"\npieces = 12\n"),
+        ("experiment.toml", "family = \"spline\"\npieces = 12\n"),
+        ("sines.toml", "family = \"sine-polynomial\"\nterms = 3\n"),
+    ] {
+        let output = folder.run(&["check", file, "--no-estimate"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(stdout(&output).contains(expected), "{}", stdout(&output));
+    }
+    let output = folder.run(&["check", "both.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = "found `pieces`, which is for `family = \"spline\"` alone";
+    assert!(stderr(&output).contains(told), "{}", stderr(&output));
+}
+
 #[test]
 fn check_prints_what_is_resolved() {
     let folder = Folder::new()

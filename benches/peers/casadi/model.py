@@ -13,6 +13,9 @@ import numpy as np
 
 SOURCE = Path(__file__).resolve().parents[3] / "src"
 
+BOX = (1.0, 0.35)
+"""Half-widths of the box that `scp` searches on this task, by bump."""
+
 
 def rotation(axis, angle):
     """Rotation about one of the axes 0, 1, 2."""
@@ -63,7 +66,7 @@ class Task:
         table = tomllib.loads((SOURCE / "reorientation/defaults.toml").read_text())
         task, self.terms = table["task"], table["trajectory"]["terms"]
         robot = tomllib.loads((SOURCE / f"robot/{task['robot']}.toml").read_text())
-        self.box = np.array(table["trajectory"]["box"]["coefficient"][: self.terms])
+        self.box = np.array(BOX)
         base = robot["base"]
         self.base_mass, self.base_inertia = base["mass"], inertia(base["inertia"])
         self.mount = np.array(base["mount"], float)

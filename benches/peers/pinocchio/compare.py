@@ -95,7 +95,7 @@ def write_problem(problem, motions):
     task, trajectory = table["task"], table["trajectory"]
     robot = tomllib.loads((SOURCE / f"robot/{task['robot']}.toml").read_text())
     base, joints = robot["base"], robot["joint"]
-    steps, terms = trajectory["attitude_steps"], trajectory["terms"]
+    steps, terms = ATTITUDE_STEPS, trajectory["terms"]
     rows = [[steps, terms, len(joints)], body(base, [0, 0, 0]), base["mount"]]
     ends = zip(task["start"]["joints_deg"], task["goal"]["joints_deg"], strict=True)
     for joint, path in zip(joints, ends, strict=True):
@@ -106,7 +106,7 @@ def write_problem(problem, motions):
         rows.append(body(joint, joint["centre_of_mass"]))
     write(problem, rows)
     rng = random.Random(1)
-    box = trajectory["box"]["coefficient"][:terms] * len(joints)
+    box = BOX * len(joints)
     rows = [[rng.uniform(-width, width) for width in box] for _ in range(MOTIONS)]
     write(motions, [[MOTIONS], *rows])
     # Panels of three steps and six nodes.
