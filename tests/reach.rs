@@ -48,7 +48,52 @@ fn a_planar_arm_turns_the_base_about_one_axis() {
     assert_eq!(of_straight(&planar(3, 1.0, [0.3, 0.0, 0.0])).0, Reach::NotFound);
     assert_eq!(of_straight(&planar(3, 1.0, [0.3, 0.1, 0.0])).0, Reach::Blocked(Block::OneAxis));
     assert_eq!(of_straight(&planar(3, 1.0, [0.0, 0.0, 1e-3])).0, Reach::Blocked(Block::OneAxis));
-    assert_eq!(of_straight(&planar(1, 1.0, [0.3, 0.0, 0.0])).0, Reach::Blocked(Block::OneJoint));
+    assert_eq!(of_straight(&planar(1, 1.0, [0.3, 0.0, 0.0])).0, Reach::Blocked(Block::Holonomic));
+}
+
+/// The first two joints of the paper's task, and more of these, on a base with its arm at its centre of mass.
+fn with_joints(joints: &[&str]) -> Task {
+    let text = "name = 'own'\n[base]\nmass = 100\nmount = [0, 0, 0]\ninertia = { xx = 10, yy = 10, zz = 10 }\n".to_owned()
+        + &joints.concat();
+    let mut task = planar(joints.len(), 1.0, [0.0, 0.0, 0.0]);
+    task.robot = Arc::new(Robot::from_document(&Document::embedded("own", &text)).unwrap());
+    task
+}
+
+/// A wheel about its axis, through its centre of mass, and how the next joint's axis is turned against it.
+fn wheel(alpha_deg: f64) -> String {
+    format!(
+        "[[joint]]\ndh = {{ d = 0, a = 0, alpha_deg = {alpha_deg} }}\nrange_deg = [-180, 180]\nmass = 5\n\
+         centre_of_mass = [0, 0, 0]\ninertia = {{ xx = 0.1, yy = 0.1, zz = 0.1 }}\n"
+    )
+}
+
+/// Two wheels on one axis through the base's centre of mass turn it by fixed shares of their own turns, whatever their paths;
+/// three on different axes do not.
+#[test]
+fn wheels_on_one_axis_are_holonomic() {
+    let [same, across] = [wheel(0.0), wheel(90.0)];
+    let turned = |mut task: Task| {
+        task.goal.base = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.3);
+        of_straight(&task).0
+    };
+    assert_eq!(turned(with_joints(&[&same, &same])), Reach::Blocked(Block::Holonomic));
+    assert_eq!(turned(with_joints(&[&across, &across, &same])), Reach::NotFound);
+}
+
+/// Whether a joint turns the base about another axis does not depend on how fast it may move.
+#[test]
+fn slow_joints_count() {
+    let arm = "[[joint]]\ndh = { d = 0, a = 0.5, alpha_deg = 0 }\nrange_deg = [-180, 180]\nmass = 5\n\
+        centre_of_mass = [-0.25, 0, 0]\ninertia = { xx = 0.1, yy = 0.2, zz = 0.2 }\n";
+    let turned = arm.replace("alpha_deg = 0", "alpha_deg = 90");
+    let mut task = with_joints(&[arm, &turned, &wheel(0.0)]);
+    task.goal.base = UnitQuaternion::from_euler_angles(0.1, 0.0, 0.0);
+    for times in [1.0, 1e-3, 1e-6] {
+        let mut slow = task.clone();
+        slow.limits.0[2] = slow.limits.0[2].map(|limit| times * limit);
+        assert_eq!(of_straight(&slow).0, Reach::NotFound, "{times}");
+    }
 }
 
 /// A tolerance as wide as the error takes the goal as reached, and one that takes in the tilt leaves the turn to be found.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use driftless::input::Document;
 use driftless::momentum::base_twist;
 use driftless::optimiser::{Ending, Optimiser as _, Scp};
-use driftless::reorientation::{Accuracy, Formulated, Reorientation, TaskFile};
+use driftless::reorientation::{Accuracy, Excursions, Formulated, Motion, Reorientation, TaskFile};
 use driftless::robot::Robot;
 use driftless::search::{Bend, LinearLimit, Oracle, Problem as _, Rng, Stop, Watch};
 use driftless::task::Task;
@@ -26,6 +26,17 @@ fn integrated(
     coefficients: &[f64],
     steps: usize,
 ) -> UnitQuaternion<f64> {
+    integrated_by(task, family, coefficients, steps, |_, _, _| ())
+}
+
+/// The same, with a look at every step: at `τ`, the rotation so far, and the base's rate by `τ`.
+fn integrated_by(
+    task: &Task,
+    family: &Spline,
+    coefficients: &[f64],
+    steps: usize,
+    mut look: impl FnMut(f64, UnitQuaternion<f64>, Vector3<f64>),
+) -> UnitQuaternion<f64> {
     let curves: Vec<_> = (0..family.joints())
         .map(|joint| family.curve(joint, &coefficients[family.coefficients_of(joint)]))
         .collect();
@@ -41,6 +52,7 @@ fn integrated(
         let start = i as f64 * h;
         let slope = |q: Quaternion<f64>, w: Vector3<f64>| q * Quaternion::from_imag(w) * 0.5;
         let [w1, w2, w3] = [rate(start), rate(start + 0.5 * h), rate(start + h)];
+        look(start, UnitQuaternion::from_quaternion(q), w1);
         let k1 = slope(q, w1);
         let k2 = slope(q + k1 * (0.5 * h), w2);
         let k3 = slope(q + k2 * (0.5 * h), w2);
@@ -65,6 +77,45 @@ fn rotations_are_those_of_a_plain_integration() {
         assert!(miss < 1e-7, "degree {degree}, {pieces} pieces: {miss} rad");
         let fine = problem.with_accuracy(Accuracy::FINE).net_rotation(&coefficients);
         assert!(fine.angle_to(&expected) < 1e-10, "degree {degree}: {}", fine.angle_to(&expected));
+    }
+}
+
+/// What happens on the way is what a plain integration in 24,000 steps meets: the base's largest turn, when, and its largest
+/// rate; and joints go as far as dense samples of their paths.
+#[test]
+fn extremes_on_the_way_are_those_of_a_plain_integration() {
+    let task = paper();
+    let duration = 7.0;
+    for (degree, pieces, wide) in [(3, 10, 0.3), (4, 12, 1.0), (5, 4, 0.1)] {
+        let family = Spline::new(&task.start.joints, &task.goal.joints, pieces, degree);
+        let own = |i: usize| wide * f64::sin(2.9 * i as f64);
+        let coefficients: Vec<f64> = (0..family.dimension()).map(own).collect();
+        let (mut turn, mut at, mut fastest) = (0.0, 0.0, 0.0_f64);
+        integrated_by(&task, &family, &coefficients, 24_000 / pieces, |tau, q, rate| {
+            if q.angle() > turn {
+                (turn, at) = (q.angle(), tau);
+            }
+            fastest = fastest.max(rate.norm() / duration);
+        });
+        let accuracy = Accuracy { attitude_steps: 24, peak_intervals: 1 };
+        let problem = Reorientation::over(task.clone(), family.clone(), accuracy);
+        let motion = Motion::sample(&problem, &coefficients, duration, 2000);
+        let found = Excursions::of(&task, &motion);
+        assert!((found.base_turn - turn).abs() < 1e-7, "{} {turn}", found.base_turn);
+        assert!((found.base_turn_at / duration - at).abs() < 1e-4, "{} {at}", found.base_turn_at);
+        assert!((found.base_rate / fastest - 1.0).abs() < 1e-6, "{} {fastest}", found.base_rate);
+        let used = found.range_used(&task);
+        for (k, joint) in task.robot.joints().enumerate() {
+            let curve = family.curve(k, &coefficients[family.coefficients_of(k)]);
+            let angles = (0..=24_000).map(|i| curve.derivatives::<1>(f64::from(i) / 24_000.0)[0]);
+            let [least, largest] =
+                angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+            let [lower, upper] = joint.range;
+            let expected = (2.0 * largest - lower - upper).max(lower + upper - 2.0 * least);
+            assert!((found.positions[k][0] - least).abs() < 1e-7);
+            assert!((found.positions[k][1] - largest).abs() < 1e-7);
+            assert!((used[k] - expected / (upper - lower)).abs() < 1e-7);
+        }
     }
 }
 

@@ -4,10 +4,11 @@ use std::fmt::{self, Write as _};
 
 use serde::Serialize;
 
-use super::motion::{AssessmentJson, ShapeJson, Told};
+use super::motion::{AssessmentJson, ExcursionsJson, ShapeJson, Told, excursions};
 use super::walls::Walls;
 use crate::reorientation::{
-    Assessment, BestKnown, Block, FamilyName, FamilySpec, Formulated, Reach, SearchedFamily,
+    Assessment, BestKnown, Block, Excursions, FamilyName, FamilySpec, Formulated, Reach,
+    SearchedFamily,
 };
 use crate::trajectory::{Family, SinePolynomial};
 
@@ -50,7 +51,9 @@ pub(super) struct PlanJson<'a> {
     #[serde(flatten)]
     family: FamilySpec,
     status: Reach,
+    reached: bool,
     tolerance_deg: f64,
+    within_limits: bool,
     least_time: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     on_walls: Option<Vec<String>>,
@@ -58,8 +61,11 @@ pub(super) struct PlanJson<'a> {
     #[serde(flatten)]
     assessment: AssessmentJson,
     #[serde(flatten)]
+    excursions: ExcursionsJson,
+    #[serde(flatten)]
     shape: ShapeJson,
     sine_polynomial: Option<OtherFamily>,
+    interrupted: bool,
     #[serde(flatten)]
     spent: Spent,
     lanes: usize,
@@ -117,13 +123,17 @@ impl<F: SearchedFamily> Found<F> {
             seed,
             family: problem.family().spec(),
             status: self.reach,
-            tolerance_deg: problem.task().goal_tolerance.to_degrees(),
+            reached: self.reach == Reach::Reached,
+            within_limits: Reach::keeps_limits(&self.assessment),
+            tolerance_deg: problem.task().goal_tolerance_deg(),
             least_time: self.reach.least_time(),
             on_walls: self.walls.as_ref().map(Walls::names),
             best_known_j: known.map(|known| known.j),
             assessment: (&self.assessment).into(),
+            excursions: ExcursionsJson::new(&self.excursions(), problem.task()),
             shape: ShapeJson::new(problem, &self.coefficients, self.assessment.duration),
             sine_polynomial: other,
+            interrupted: self.interrupted,
             spent: self.spent,
             lanes: problem.width().lanes(),
         }
@@ -140,7 +150,10 @@ impl<F: SearchedFamily> Found<F> {
                 format!("  family         splines of degree {degree} with {pieces} pieces\n")
             }
         };
-        let _ = writeln!(text, "{}", Told { task, assessment: &self.assessment });
+        let excursions = self.excursions();
+        let told = Told { task, assessment: &self.assessment, excursions: &excursions };
+        let _ = writeln!(text, "{told}");
+        let _ = writeln!(text, "  verdict        {}", self.verdict());
         if let Some(known) = known {
             let _ =
                 writeln!(text, "  this J         {}", known.compared_with(self.assessment.cost));
@@ -151,6 +164,22 @@ impl<F: SearchedFamily> Found<F> {
         let Spent { evaluations, seconds, .. } = self.spent;
         let _ = write!(text, "  {evaluations} evaluations in {seconds:.2} s");
         text
+    }
+
+    fn excursions(&self) -> Excursions {
+        excursions(self.problem.task(), &self.coefficients, self.assessment.duration)
+    }
+
+    /// Whether the goal is reached, and limits are kept.
+    pub(super) fn verdict(&self) -> String {
+        let task = self.problem.task().task();
+        let is_there = self.assessment.residual() <= task.goal_tolerance;
+        let goal = if is_there { "reaches" } else { "misses" };
+        let limits = if Reach::keeps_limits(&self.assessment) { "keeps" } else { "does not keep" };
+        format!(
+            "{goal} the goal (within {}°), {limits} all limits and ranges",
+            task.goal_tolerance_deg()
+        )
     }
 
     /// Warns where the goal is missed; says which variables are on walls of the box, where that may matter.
@@ -169,8 +198,8 @@ impl<F: SearchedFamily> Found<F> {
             Reach::Blocked(Block::NoTurn) => {
                 "and no motion brings it nearer: the joints do not turn the base".to_owned()
             }
-            Reach::Blocked(Block::OneJoint) => {
-                "and no motion brings it nearer: with one joint, where the base ends follows from where the joint ends"
+            Reach::Blocked(Block::Holonomic) => {
+                "and no motion brings it nearer: where the base ends follows from where the joints end, however they go there"
                     .to_owned()
             }
             Reach::Blocked(Block::OneAxis) => {
@@ -178,7 +207,8 @@ impl<F: SearchedFamily> Found<F> {
                     .to_owned()
             }
             Reach::TooSlow(seconds) => format!(
-                "which cannot be reached within {seconds:.0} s: joints at their largest rates do not turn the base faster"
+                "which needs about {seconds:.0} s or more, longer than motions that are searched: joints at their largest rates do \
+                 not turn the base faster"
             ),
             Reach::NotFound if self.interrupted => return,
             Reach::NotFound => {
@@ -197,6 +227,8 @@ impl<F: SearchedFamily> Found<F> {
                 format!("{missed}; {advice}")
             }
         };
-        note!("warning: the base ends {residual:.6}° from its goal, {why}");
+        let digits =
+            if residual < 1e-3 { format!("{residual:.1e}") } else { format!("{residual:.6}") };
+        note!("warning: the base ends {digits}° from its goal, {why}");
     }
 }

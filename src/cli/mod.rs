@@ -120,6 +120,9 @@ enum CliError {
     /// The user wanted the command to end.
     #[error("interrupted: {0}")]
     Interrupted(String),
+    /// A motion is not what the user requires.
+    #[error("required, but the motion {0}")]
+    Required(String),
     /// No motion came of it.
     #[error("no motion found: no evaluation gave a finite cost")]
     #[diagnostic(help("are all limits, lengths, masses and boxes of a sensible size?"))]
@@ -225,12 +228,13 @@ impl CliError {
             Self::Unreadable { .. } | Self::Input { .. } | Self::Usage { .. } => ExitCode::from(2),
             #[cfg(feature = "harness")]
             Self::Shard { .. } => ExitCode::from(2),
+            Self::Required(_) => ExitCode::from(3),
             _ => ExitCode::from(1),
         }
     }
 }
 
-/// Parses the arguments and does what they ask: exit status 0 done, 1 failed, 2 bad usage or input.
+/// Parses the arguments and does what they ask: exit status 0 done, 1 failed, 2 bad usage or input, 3 not as required.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let hook = |_: &_| -> Box<dyn miette::ReportHandler> {

@@ -10,8 +10,9 @@ use super::CliError;
 use crate::output::check_writable;
 #[cfg(feature = "harness")]
 use crate::output::create_folder;
-use crate::reorientation::{AnyReorientation, Assessment};
-use crate::reorientation::{INTERVALS, MotionFormat, write_motion};
+use crate::reorientation::{
+    AnyReorientation, Assessment, Excursions, INTERVALS, MotionFormat, write_motion,
+};
 use crate::task::Task;
 
 /// Where to write a motion.
@@ -106,6 +107,38 @@ impl From<&Assessment> for AssessmentJson {
     }
 }
 
+/// Intervals in which a motion is looked at between its start and its end.
+const LOOKS: usize = 2000;
+
+/// How far base and joints go on the way.
+pub(super) fn excursions(
+    problem: &dyn AnyReorientation,
+    coefficients: &[f64],
+    duration: f64,
+) -> Excursions {
+    Excursions::of(problem.task(), &problem.sample(coefficients, duration, LOOKS))
+}
+
+/// The same as JSON.
+#[derive(Debug, Serialize)]
+pub(super) struct ExcursionsJson {
+    largest_base_turn_deg: f64,
+    largest_base_turn_at: f64,
+    largest_base_rate_deg_s: f64,
+    range_used: Vec<f64>,
+}
+
+impl ExcursionsJson {
+    pub(super) fn new(excursions: &Excursions, task: &Task) -> Self {
+        Self {
+            largest_base_turn_deg: excursions.base_turn.to_degrees(),
+            largest_base_turn_at: excursions.base_turn_at,
+            largest_base_rate_deg_s: excursions.base_rate.to_degrees(),
+            range_used: excursions.range_used(task),
+        }
+    }
+}
+
 /// The shape of a motion, as JSON: the paper's parameters only where it has them.
 #[derive(Debug, Serialize)]
 pub(super) struct ShapeJson {
@@ -128,28 +161,36 @@ impl ShapeJson {
     }
 }
 
-/// For people: cost and its parts, then the peaks joint by joint with the share of the limit used.
+/// For people: cost and its parts, then the peaks joint by joint with the share of the limit used, and what happens on the way.
 pub(super) struct Told<'a> {
     pub(super) task: &'a Task,
     pub(super) assessment: &'a Assessment,
+    pub(super) excursions: &'a Excursions,
 }
 
 impl fmt::Display for Told<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { task, assessment } = self;
+        let Self { task, assessment, excursions } = self;
         writeln!(f, "  J              {:.6}", assessment.cost)?;
         writeln!(f, "  duration       {:.6} s", assessment.duration)?;
         writeln!(f, "  base residual  {:.6}°", assessment.residual().to_degrees())?;
         writeln!(f, "  penalty        {:.6}", assessment.penalty())?;
-        writeln!(f, "  joint          rate [°/s]     acceleration [°/s²]   jerk [°/s³]")?;
-        let joints = task.robot.joints().zip(&assessment.peaks.0).zip(&task.limits.0);
-        for ((joint, peaks), limits) in joints {
-            write!(f, "  {:<12}", joint.name)?;
+        let names = task.robot.joints().map(|joint| joint.name.chars().count());
+        let width = names.max().unwrap_or_default().max(12);
+        writeln!(
+            f,
+            "  {:<width$} rate [°/s]     acceleration [°/s²]   jerk [°/s³]           range",
+            "joint"
+        )?;
+        let used = excursions.range_used(task);
+        let joints = task.robot.joints().zip(&assessment.peaks.0).zip(&task.limits.0).zip(used);
+        for (((joint, peaks), limits), used) in joints {
+            write!(f, "  {:<width$}", joint.name)?;
             for (peak, limit) in peaks.iter().zip(limits) {
                 let share = 100.0 * peak.value / limit;
                 write!(f, "  {:>9.4} ({share:>4.0} %)", peak.value.to_degrees())?;
             }
-            writeln!(f)?;
+            writeln!(f, "  {:>5.0} %", 100.0 * used)?;
         }
         let largest = |k: usize| {
             let all = task.robot.joints().zip(&assessment.peaks.0);
@@ -157,8 +198,14 @@ impl fmt::Display for Told<'_> {
         };
         if let Some((joint, peaks)) = largest(2) {
             let (jerk, time) = (peaks[2].value.to_degrees(), peaks[2].tau * assessment.duration);
-            write!(f, "  largest jerk   {jerk:.4} °/s³ on {} at {time:.4} s", joint.name)?;
+            writeln!(f, "  largest jerk   {jerk:.4} °/s³ on {} at {time:.4} s", joint.name)?;
         }
-        Ok(())
+        write!(
+            f,
+            "  on the way     the base turns by up to {:.3}° (at {:.4} s), at up to {:.3} °/s",
+            excursions.base_turn.to_degrees(),
+            excursions.base_turn_at,
+            excursions.base_rate.to_degrees()
+        )
     }
 }

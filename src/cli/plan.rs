@@ -52,6 +52,9 @@ pub(super) struct Plan {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// End with exit status 3 unless the motion reaches its goal and keeps all limits and ranges
+    #[arg(long)]
+    require: bool,
     /// Say the motion as an entry for results/best-known.toml, too
     #[arg(long)]
     entry: bool,
@@ -82,7 +85,11 @@ impl Plan {
         let file = TaskFile { trajectory: self.over(trajectory, &settings), task };
         self.check_options(file.trajectory.family())?;
         let refused = |error| document.error_at(0..0, error, None);
-        match file.problem(&document)? {
+        let problem = file.problem(&document)?;
+        if let Some(residual) = problem.task().already_there() {
+            return self.tell_already_there(problem.task(), residual);
+        }
+        match problem {
             TaskProblem::SinePolynomial(problem, boxes) => {
                 warn_of(&problem.task().robot);
                 // Default settings name no formulation.
@@ -117,6 +124,31 @@ impl Plan {
                 self.finish(&found, other, file.task)
             }
         }
+    }
+
+    /// Says that there is nothing to plan.
+    fn tell_already_there(&self, task: &Task, residual: f64) -> Result<(), CliError> {
+        let (residual_deg, tolerance_deg) = (residual.to_degrees(), task.goal_tolerance_deg());
+        if self.json {
+            let json = serde_json::json!({
+                "task": shown(self.file.as_ref(), "xiao2023"),
+                "already_there": true,
+                "status": Reach::Reached,
+                "reached": true,
+                "tolerance_deg": tolerance_deg,
+                "within_limits": true,
+                "t_f": 0.0,
+                "residual_deg": residual_deg,
+            });
+            say!("{json:#}");
+        } else {
+            say!(
+                "{}: already there: all joints stand at their goals, and the base is {residual_deg:.6}° from its goal (within \
+                 {tolerance_deg}°)",
+                shown(self.file.as_ref(), "the paper's task")
+            );
+        }
+        Ok(())
     }
 
     /// What a file says of the family, with what the command line says instead.
@@ -169,7 +201,9 @@ impl Plan {
         };
         let own = Formulated::free_form(Arc::new(problem.clone())).map_err(&refused)?;
         let mut found = search(&settings, &own, &own, longest, self.seed, self.budget)?;
-        let mut time_weight = 1.0 - problem.task().base_weight;
+        // Beside a long time the goal weighs less, so the longer the less does time.
+        let own_weight = 1.0 - problem.task().base_weight;
+        let mut time_weight = own_weight.min(1.0 / found.assessment.duration);
         for round in 1..=MORE_ROUNDS {
             let left = self.budget - found.spent.evaluations;
             if found.reach != Reach::NotFound || found.interrupted || left == 0 {
@@ -219,6 +253,9 @@ impl Plan {
         self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
         if found.interrupted {
             return Err(CliError::Interrupted("this is the best motion so far".to_owned()));
+        }
+        if self.require && found.reach != Reach::Reached {
+            return Err(CliError::Required(found.verdict()));
         }
         Ok(())
     }
@@ -276,6 +313,9 @@ fn search<F: Family>(
         });
     };
     let (coefficients, assessment) = problem.certify(&best.x);
+    if !assessment.cost.is_finite() || !assessment.duration.is_finite() {
+        return Err(CliError::NoMotion);
+    }
     let spent = Spent {
         evaluations: oracle.evaluations(),
         linearisations: oracle.linearisations(),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::motion::{AssessmentJson, MotionFiles, ShapeJson, Told};
+use super::motion::{AssessmentJson, ExcursionsJson, MotionFiles, ShapeJson, Told, excursions};
 use super::{CliError, read_or, shown, warn_of};
 use crate::reorientation::{Published, Reading, ReplayFile};
 
@@ -34,6 +34,8 @@ struct PublishedJson {
     shape: ShapeJson,
     t_f: f64,
     j: Option<f64>,
+    #[serde(flatten)]
+    excursions: ExcursionsJson,
 }
 
 #[derive(Debug, Serialize)]
@@ -49,8 +51,10 @@ impl Replay {
         let document = read_or(self.file.as_deref(), ReplayFile::paper)?;
         let published = ReplayFile::read(&document)?.build(&document)?;
         warn_of(&published.problem.task().robot);
+        let Published { problem, coefficients, duration, .. } = &published;
+        let (task, excursions) = (problem.task(), excursions(&**problem, coefficients, *duration));
         if self.json {
-            say!("{}", json(&published));
+            say!("{}", json(&published, ExcursionsJson::new(&excursions, task)));
         } else {
             say!("{}", shown(self.file.as_ref(), "the solution published by Xiao et al. (2023)"));
             if let Some(claim) = published.cost {
@@ -58,14 +62,14 @@ impl Replay {
             }
             for (reading, assessment) in published.readings() {
                 say!("read {}:", reading.meaning());
-                say!("{}", Told { task: published.problem.task(), assessment: &assessment });
+                say!("{}", Told { task, assessment: &assessment, excursions: &excursions });
             }
         }
         self.files.write(&*published.problem, &published.coefficients, published.duration)
     }
 }
 
-fn json(published: &Published) -> String {
+fn json(published: &Published, excursions: ExcursionsJson) -> String {
     let Published { problem, coefficients, duration, cost } = published;
     let readings = published.readings().into_iter();
     let readings = readings
@@ -75,6 +79,7 @@ fn json(published: &Published) -> String {
             shape: ShapeJson::new(&**problem, coefficients, *duration),
             t_f: *duration,
             j: *cost,
+            excursions,
         },
         readings: readings.collect(),
     };

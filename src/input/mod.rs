@@ -217,11 +217,13 @@ fn nearest_known_name(message: &str) -> Option<String> {
     nearest(unknown, known.iter().copied()).map(|name| format!("did you mean `{name}`?"))
 }
 
-/// The name of `known` closest to `name`, unless none is close.
+/// The name of `known` closest to `name`, unless none is close. One that `name` has a word in front of is none: the rate of a
+/// base is not that of a joint.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let closeness = |k: &str| strsim::jaro_winkler(name, k);
+    let is_qualified = |k: &str| name.strip_suffix(k).is_some_and(|word| word.ends_with('_'));
     known
         .into_iter()
-        .filter(|k| closeness(k) > 0.75)
+        .filter(|k| closeness(k) > 0.75 && !is_qualified(k))
         .max_by(|a, b| closeness(a).total_cmp(&closeness(b)))
 }

@@ -7,6 +7,7 @@ mod bases;
 mod best_known;
 mod boxes;
 mod derivatives;
+mod excursions;
 #[cfg(feature = "harness")]
 mod exhibits;
 mod export;
@@ -40,6 +41,7 @@ pub use accuracy::Accuracy;
 pub use any::{AnyReorientation, SearchedFamily};
 pub use best_known::{BestKnown, fingerprint};
 pub use boxes::Boxes;
+pub use excursions::Excursions;
 #[cfg(all(feature = "cli", feature = "harness"))]
 pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]

@@ -1,5 +1,8 @@
 //! A motion sampled in time, for charts and exports.
 
+use std::array::from_fn;
+use std::f64::consts::{PI, TAU};
+
 use nalgebra::UnitQuaternion;
 
 use super::fitness::Reorientation;
@@ -42,7 +45,7 @@ impl Motion {
         let joints = task.robot.joints().zip(&curves).map(|(joint, path)| {
             let derivatives = taus.iter().map(|&tau| {
                 let values = path.derivatives::<4>(tau);
-                std::array::from_fn(|k| values[k] / duration.powi(k as i32))
+                from_fn(|k| values[k] / duration.powi(k as i32))
             });
             JointMotion { name: joint.name.to_owned(), derivatives: derivatives.collect() }
         });
@@ -63,9 +66,61 @@ impl Motion {
         }
     }
 
-    /// The base's ZYX Euler angles, `[yaw, pitch, roll]` \[rad\] at each time.
+    /// The base's ZYX Euler angles, `[yaw, pitch, roll]` \[rad\] at each time. Of all triples that an attitude has, that nearest to
+    /// the one before, so that angles go on where a full or a half turn is passed.
     pub fn base_zyx(&self) -> Vec<[f64; 3]> {
-        let angles = self.base.iter().map(UnitQuaternion::euler_angles);
-        angles.map(|(roll, pitch, yaw)| [yaw, pitch, roll]).collect()
+        let mut before = self.base.first().map_or([0.0; 3], zyx);
+        let next = |attitude| {
+            before = zyx_near(attitude, before);
+            before
+        };
+        self.base.iter().map(next).collect()
+    }
+}
+
+/// `[yaw, pitch, roll]` \[rad\], the pitch within a quarter turn.
+fn zyx(attitude: &UnitQuaternion<f64>) -> [f64; 3] {
+    let (roll, pitch, yaw) = attitude.euler_angles();
+    [yaw, pitch, roll]
+}
+
+/// Of all triples `[yaw, pitch, roll]` \[rad\] of an attitude the nearest to another one.
+pub(super) fn zyx_near(attitude: &UnitQuaternion<f64>, other: [f64; 3]) -> [f64; 3] {
+    let [yaw, pitch, roll] = zyx(attitude);
+    let near = |angles: [f64; 3]| -> [f64; 3] {
+        from_fn(|k| angles[k] - TAU * ((angles[k] - other[k]) / TAU).round())
+    };
+    let distance = |angles: &[f64; 3]| -> f64 {
+        angles.iter().zip(other).map(|(angle, other)| (angle - other).powi(2)).sum()
+    };
+    let [same, flipped] = [near([yaw, pitch, roll]), near([yaw + PI, PI - pitch, roll + PI])];
+    if distance(&flipped) < distance(&same) { flipped } else { same }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    /// Attitudes by the product of three rotations: angles that grow evenly are found again, beyond full and half turns, and beyond a
+    /// quarter turn of the pitch.
+    #[test]
+    fn euler_angles_go_on() {
+        for slopes in [[1.0, 0.1, -0.2], [0.05, 1.0, 0.02], [-0.3, 0.2, 1.0]] {
+            let expected: Vec<[f64; 3]> =
+                (0..400).map(|i| from_fn(|k| 0.3 + 0.02 * f64::from(i) * slopes[k])).collect();
+            let about = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
+            let base = expected.iter().map(|[yaw, pitch, roll]| {
+                about(Vector3::z_axis(), *yaw)
+                    * about(Vector3::y_axis(), *pitch)
+                    * about(Vector3::x_axis(), *roll)
+            });
+            let motion = Motion { time: Vec::new(), joints: Vec::new(), base: base.collect() };
+            for (found, expected) in motion.base_zyx().iter().zip(&expected) {
+                let miss = (0..3).map(|k| (found[k] - expected[k]).abs()).fold(0.0, f64::max);
+                assert!(miss < 1e-9, "{found:?} {expected:?}");
+            }
+        }
     }
 }

@@ -1,9 +1,12 @@
 //! Whether a motion brings the base to its goal, and if it does not, whether any can.
 
-use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Matrix3, SymmetricEigen, UnitQuaternion, Vector3};
 use serde::{Serialize, Serializer};
 
 use super::fitness::Assessment;
+use crate::attitude::increments;
 use crate::momentum::base_twist;
 use crate::search::Rng;
 use crate::task::Task;
@@ -14,7 +17,12 @@ const CONFIGURATIONS: usize = 512;
 const SEED: u64 = 1;
 
 /// Below this share of the largest, a turn is none.
-const NOTHING: f64 = 1e-9;
+const NOTHING: f64 = 1e-12;
+
+/// Loops of the joints, steps round each, and the share of all turns on the way up to which the base has come back.
+const LOOPS: usize = 8;
+const LOOP_STEPS: usize = 256;
+const RETURNS: f64 = 1e-8;
 
 /// Limits and ranges are kept where the cost's penalty is no larger: an excess of 10⁻⁶.
 const KEPT: f64 = 1e-4;
@@ -28,7 +36,7 @@ pub enum Reach {
     NotFound,
     /// No motion does.
     Blocked(Block),
-    /// None does within this time \[s\], for joints at their largest rates do not turn the base faster.
+    /// None does within about this time \[s\], for joints at their largest rates do not turn the base faster.
     TooSlow(f64),
 }
 
@@ -37,8 +45,8 @@ pub enum Reach {
 pub enum Block {
     /// Joints do not turn the base at all.
     NoTurn,
-    /// There is one joint, so where the base ends follows from where the joint ends.
-    OneJoint,
+    /// Where the base ends follows from where the joints end, however they go there: with one joint, or with wheels.
+    Holonomic,
     /// All joints turn the base about the same axis, and the goal is a turn about another.
     OneAxis,
 }
@@ -55,7 +63,7 @@ impl Reach {
     /// needs longer than those, and than the motion itself, is [`TooSlow`](Self::TooSlow).
     pub fn of(task: &Task, motion: &Assessment, longest: f64) -> Self {
         if motion.residual() <= task.goal_tolerance {
-            return if motion.penalty() <= KEPT { Self::Reached } else { Self::NotFound };
+            return if Self::keeps_limits(motion) { Self::Reached } else { Self::NotFound };
         }
         let turns = BaseTurns::of(task);
         let turn = (task.start.base.inverse() * task.goal.base).scaled_axis();
@@ -65,6 +73,11 @@ impl Reach {
         // Within the tolerance the goal is reached as well.
         let least = (turn.norm() - task.goal_tolerance) / turns.fastest;
         if least > motion.duration.max(longest) { Self::TooSlow(least) } else { Self::NotFound }
+    }
+
+    /// Whether a motion keeps all limits on rates, accelerations and jerks, and all joints' ranges.
+    pub fn keeps_limits(motion: &Assessment) -> bool {
+        motion.penalty() <= KEPT
     }
 
     /// The name used in JSON.
@@ -85,34 +98,34 @@ impl Reach {
     }
 }
 
-/// How joints at their largest rates turn the base, in base axes.
+/// How joints turn the base, in base axes.
 struct BaseTurns {
-    joints: usize,
-    /// The largest angular speed \[rad/s\].
+    /// The largest angular speed that joints at their largest rates give it \[rad/s\], as far as a random search has found.
     fastest: f64,
-    /// `Σ ω ωᵀ` over joints and configurations.
+    /// `Σ n nᵀ` over joints that turn the base at all, and configurations, where `n` is the turn by the joint as a share of its largest.
     moment: Matrix3<f64>,
 }
 
 impl BaseTurns {
     fn of(task: &Task) -> Self {
         let ranges: Vec<[f64; 2]> = task.robot.joints().map(|joint| joint.range).collect();
-        let joints = ranges.len();
         let mut rng = Rng::new(SEED);
-        let mut turns = Self { joints, fastest: 0.0, moment: Matrix3::zeros() };
-        for _ in 0..CONFIGURATIONS {
-            let at: Vec<f64> = ranges.iter().map(|[from, to]| rng.uniform(*from, *to)).collect();
-            let mut speed = 0.0;
-            for (joint, limits) in task.limits.0.iter().enumerate() {
-                let mut rates = vec![0.0; joints];
-                rates[joint] = limits[0];
-                let turn: Vector3<f64> = base_twist(&task.robot, &at, &rates).angular.into();
-                speed += turn.norm();
-                turns.moment += turn * turn.transpose();
+        let mut draw = || -> Vec<f64> {
+            ranges.iter().map(|[lower, upper]| rng.uniform(*lower, *upper)).collect()
+        };
+        let drawn: Vec<Vec<f64>> = (0..CONFIGURATIONS).map(|_| draw()).collect();
+        let turns: Vec<Vec<Vector3<f64>>> = drawn.iter().map(|at| turns_at(task, at)).collect();
+        let all = || (0..ranges.len()).map(|joint| turns.iter().map(move |turns| turns[joint]));
+        let largest: Vec<f64> =
+            all().map(|own| own.map(|turn| turn.norm()).fold(0.0, f64::max)).collect();
+        let least = NOTHING * largest.iter().copied().fold(0.0, f64::max);
+        let mut moment = Matrix3::zeros();
+        for (own, largest) in all().zip(&largest).filter(|(_, largest)| **largest > least) {
+            for turn in own.map(|turn| turn / *largest) {
+                moment += turn * turn.transpose();
             }
-            turns.fastest = turns.fastest.max(speed);
         }
-        turns
+        Self { fastest: fastest(task, &ranges, drawn), moment }
     }
 
     /// Why no motion turns the base so, if none does.
@@ -124,9 +137,74 @@ impl BaseTurns {
         let across = turn - axis * axis.dot(turn);
         match eigen.eigenvalues.iter().filter(|value| !is_nothing(**value)).count() {
             0 => Some(Block::NoTurn),
-            _ if self.joints == 1 => Some(Block::OneJoint),
+            _ if is_holonomic(task) => Some(Block::Holonomic),
             1 if across.norm() > task.goal_tolerance => Some(Block::OneAxis),
             _ => None,
         }
     }
+}
+
+/// By how much each joint turns the base per unit of its rate.
+fn turns_at(task: &Task, positions: &[f64]) -> Vec<Vector3<f64>> {
+    let turn = |joint| {
+        let mut rates = vec![0.0; positions.len()];
+        rates[joint] = 1.0;
+        base_twist(&task.robot, positions, &rates).angular.into()
+    };
+    (0..positions.len()).map(turn).collect()
+}
+
+/// The largest angular speed of the base: of those drawn, and from there by steps at random, ever shorter.
+fn fastest(task: &Task, ranges: &[[f64; 2]], drawn: Vec<Vec<f64>>) -> f64 {
+    let speed = |at: &[f64]| -> f64 {
+        let turns = turns_at(task, at).into_iter().zip(&task.limits.0);
+        turns.map(|(turn, limits)| limits[0] * turn.norm()).sum()
+    };
+    let all = drawn.into_iter().map(|at| (speed(&at), at));
+    let Some((mut best, mut here)) = all.max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
+        return 0.0;
+    };
+    let mut rng = Rng::new(SEED);
+    for k in 0..CONFIGURATIONS {
+        let share = 0.5 * (1.0 - k as f64 / CONFIGURATIONS as f64);
+        let step = |(at, [lower, upper]): (&f64, &[f64; 2])| {
+            let width = share * (upper - lower);
+            (at + rng.uniform(-width, width)).clamp(*lower, *upper)
+        };
+        let there: Vec<f64> = here.iter().zip(ranges).map(step).collect();
+        let found = speed(&there);
+        if found > best {
+            (best, here) = (found, there);
+        }
+    }
+    best
+}
+
+/// Whether where the base ends follows from where the joints end: joints that go round a loop bring it back.
+fn is_holonomic(task: &Task) -> bool {
+    let mut rng = Rng::new(SEED);
+    let ranges: Vec<[f64; 2]> = task.robot.joints().map(|joint| joint.range).collect();
+    (0..LOOPS).all(|_| {
+        let waves: Vec<[f64; 3]> = ranges
+            .iter()
+            .map(|[lower, upper]| {
+                let size = ((upper - lower) / 2.0).min(PI) * rng.uniform(0.3, 1.0);
+                [f64::midpoint(*lower, *upper), size, rng.uniform(0.0, TAU)]
+            })
+            .collect();
+        let steps = increments(&task.robot, LOOP_STEPS, |tau, positions, rates| {
+            for ((position, rate), [middle, size, phase]) in
+                positions.iter_mut().zip(rates).zip(&waves)
+            {
+                let (sine, cosine) = (TAU * tau + phase).sin_cos();
+                (*position, *rate) = (middle + size * sine, TAU * size * cosine);
+            }
+        });
+        let (mut net, mut all) = (UnitQuaternion::identity(), 0.0);
+        for step in steps {
+            net *= step;
+            all += step.angle();
+        }
+        net.angle() <= RETURNS * all
+    })
 }

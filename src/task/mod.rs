@@ -46,6 +46,19 @@ impl Task {
         })
     }
 
+    /// What is left to do at the start, if it is nothing: the angle \[rad\], within the goal's tolerance, by which the base is off.
+    pub fn already_there(&self) -> Option<f64> {
+        let residual = self.start.base.angle_to(&self.goal.base);
+        let is_there = self.start.joints == self.goal.joints && residual <= self.goal_tolerance;
+        is_there.then_some(residual)
+    }
+
+    /// The goal's tolerance in degrees, as written, without the rounding of its way through radians.
+    pub fn goal_tolerance_deg(&self) -> f64 {
+        let degrees = self.goal_tolerance.to_degrees();
+        format!("{degrees:.12e}").parse().unwrap_or(degrees)
+    }
+
     /// The limit of all joints on rate, acceleration or jerk (order 0, 1, 2), in degrees; none where
     /// joints differ. As written, without the rounding of its way through radians.
     pub fn uniform_limit_deg(&self, order: usize) -> Option<f64> {

@@ -35,6 +35,7 @@ fn tasks() {
         ("limits_too_few", "[task.limits]\nrate_deg_s = [60, 60]\n"),
         ("limit_infinite", "[task.limits]\nacceleration_deg_s2 = inf\n"),
         ("limit_of_wrong_type", "[task.limits]\nacceleration_deg_s2 = 'high'\n"),
+        ("limit_of_the_base", "[task.limits]\nbase_rate_deg_s = 1\n"),
         ("weight_out_of_range", "[task.weights]\nbase = 1.5\n"),
         ("unknown_robot", "[task]\nrobot = 'xiao2032'\n"),
         ("no_terms", "[trajectory]\nterms = 0\n"),

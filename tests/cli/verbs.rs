@@ -48,6 +48,28 @@ fn replay_reads_what_plan_found() {
     near(&replay["readings"][0]["residual_deg"], plan["residual_deg"].as_f64().unwrap(), 1e-9);
 }
 
+/// A robot that stands at its goal has nothing to do; beyond the goal's tolerance, or with a joint elsewhere, it has.
+#[test]
+fn plan_says_where_nothing_is_to_be_done() {
+    let joints = "joints_deg = [0, 10, 20, 30, 40, 50]\n";
+    let task = |turn: &str, goal: &str| {
+        format!("[task.start]\n{joints}base_zyx_deg = [{turn}, 0, 0]\n[task.goal]\n{goal}")
+    };
+    let folder = Folder::new()
+        .with("there.toml", task("5e-4", joints))
+        .with("turned.toml", task("0.5", joints))
+        .with("moved.toml", task("0", "joints_deg = [0, 10, 20, 30, 40, 51]\n"));
+    let output = folder.run(&["plan", "there.toml"]);
+    assert!(output.status.success() && stdout(&output).contains("already there"));
+    let there = json(&folder, &["plan", "there.toml", "--json"]);
+    assert_eq!((&there["already_there"], &there["status"]), (&true.into(), &"reached".into()));
+    near(&there["residual_deg"], 5e-4, 1e-12);
+    for file in ["turned.toml", "moved.toml"] {
+        let plan = json(&folder, &["plan", file, "--pieces", "10", "--json"]);
+        assert!(plan["already_there"].is_null() && plan["t_f"].as_f64().unwrap() > 0.1, "{plan}");
+    }
+}
+
 /// A task with nothing to do and one that cannot be done in finite time are no reason to panic.
 #[test]
 fn plan_survives_degenerate_tasks() {
@@ -138,10 +160,18 @@ fn plan_says_whether_the_goal_is_reached() {
     assert_eq!(plan["status"], "out-of-reach");
     assert!(plan["residual_deg"].as_f64().unwrap() > 1.0 && plan["least_time"].is_null());
     let output = folder.run(&["plan", "task.toml"]);
-    assert!(stderr(&output).contains("one joint"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("however they go there"), "{}", stderr(&output));
     assert!(!stderr(&output).contains("--seed"), "{}", stderr(&output));
     let wide = json(&folder, &["plan", "wide.toml", "--json"]);
     assert_eq!(wide["status"], "reached");
+    for (plan, is_reached) in [(&plan, false), (&wide, true)] {
+        assert_eq!((&plan["reached"], &plan["within_limits"]), (&is_reached.into(), &true.into()));
+    }
+    for (file, code) in [("task.toml", 3), ("wide.toml", 0)] {
+        let output = folder.run(&["plan", file, "--require"]);
+        assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
+        assert!(stdout(&output).contains("the goal (within"), "{}", stdout(&output));
+    }
     near(&wide["tolerance_deg"], 30.0, 1e-12);
     // The goal is a demand, whatever it weighs, and the cost that is told is the task's own: here the duration.
     let folder = folder.with("weightless.toml", "[task.weights]\nbase = 0\n");
