@@ -179,7 +179,7 @@ impl fmt::Display for Told<'_> {
         let width = names.max().unwrap_or_default().max(12);
         writeln!(
             f,
-            "  {:<width$} rate [°/s]     acceleration [°/s²]   jerk [°/s³]           range",
+            "  {:<width$}   rate [°/s]     acceleration [°/s²]   jerk [°/s³]           range",
             "joint"
         )?;
         let used = excursions.range_used(task);

@@ -185,19 +185,25 @@ fn is_holonomic(task: &Task) -> bool {
     let mut rng = Rng::new(SEED);
     let ranges: Vec<[f64; 2]> = task.robot.joints().map(|joint| joint.range).collect();
     (0..LOOPS).all(|_| {
-        let waves: Vec<[f64; 3]> = ranges
+        // Two waves each: an ellipse has a symmetry that may bring back a base that other loops turn.
+        let waves: Vec<[f64; 5]> = ranges
             .iter()
             .map(|[lower, upper]| {
-                let size = ((upper - lower) / 2.0).min(PI) * rng.uniform(0.3, 1.0);
-                [f64::midpoint(*lower, *upper), size, rng.uniform(0.0, TAU)]
+                let half = ((upper - lower) / 2.0).min(PI);
+                let mut share = |least: f64| half * rng.uniform(least, 0.5);
+                let [slow, fast] = [share(0.25), share(0.1)];
+                let mut phase = || rng.uniform(0.0, TAU);
+                [f64::midpoint(*lower, *upper), slow, phase(), fast, phase()]
             })
             .collect();
         let steps = increments(&task.robot, LOOP_STEPS, |tau, positions, rates| {
-            for ((position, rate), [middle, size, phase]) in
+            for ((position, rate), [middle, slow, first, fast, second]) in
                 positions.iter_mut().zip(rates).zip(&waves)
             {
-                let (sine, cosine) = (TAU * tau + phase).sin_cos();
-                (*position, *rate) = (middle + size * sine, TAU * size * cosine);
+                let [(s, c), (s2, c2)] =
+                    [TAU * tau + first, 2.0 * TAU * tau + second].map(f64::sin_cos);
+                *position = middle + slow * s + fast * s2;
+                *rate = TAU * (slow * c + 2.0 * fast * c2);
             }
         });
         let (mut net, mut all) = (UnitQuaternion::identity(), 0.0);
