@@ -8,6 +8,10 @@ use driftless::robot::Robot;
 use driftless::task::Task;
 use nalgebra::UnitQuaternion;
 
+/// A link of half a metre, its joint parallel to the next.
+const JOINT: &str = "[[joint]]\ndh = { d = 0, a = 0.5, alpha_deg = 0 }\nrange_deg = [-180, 180]\nmass = 5\n\
+    centre_of_mass = [-0.25, 0, 0]\ninertia = { xx = 0.1, yy = 0.2, zz = 0.2 }\n";
+
 /// The paper's start and goal for the first joints of an arm whose axes are all parallel to the base's z axis, on a base
 /// of so many times the inertia, which ends turned by yaw, pitch and roll \[rad\].
 fn planar(joints: usize, times: f64, [yaw, pitch, roll]: [f64; 3]) -> Task {
@@ -16,9 +20,7 @@ fn planar(joints: usize, times: f64, [yaw, pitch, roll]: [f64; 3]) -> Task {
         100.0 * times,
         i = 10.0 * times,
     );
-    let joint = "[[joint]]\ndh = { d = 0, a = 0.5, alpha_deg = 0 }\nrange_deg = [-180, 180]\nmass = 5\n\
-        centre_of_mass = [-0.25, 0, 0]\ninertia = { xx = 0.1, yy = 0.2, zz = 0.2 }\n";
-    let text = base + &joint.repeat(joints);
+    let text = base + &JOINT.repeat(joints);
     let robot = Robot::from_document(&Document::embedded("planar", &text)).unwrap();
     let document = TaskFile::paper();
     let (paper, _) = TaskFile::read(&document).unwrap().build(&document).unwrap();
@@ -51,7 +53,7 @@ fn a_planar_arm_turns_the_base_about_one_axis() {
     assert_eq!(of_straight(&planar(1, 1.0, [0.3, 0.0, 0.0])).0, Reach::Blocked(Block::Holonomic));
 }
 
-/// The first two joints of the paper's task, and more of these, on a base with its arm at its centre of mass.
+/// The same without a turn of the base, for these joints on a base whose arm is mounted at its centre of mass.
 fn with_joints(joints: &[&str]) -> Task {
     let text = "name = 'own'\n[base]\nmass = 100\nmount = [0, 0, 0]\ninertia = { xx = 10, yy = 10, zz = 10 }\n".to_owned()
         + &joints.concat();
@@ -84,10 +86,8 @@ fn wheels_on_one_axis_are_holonomic() {
 /// Whether a joint turns the base about another axis does not depend on how fast it may move.
 #[test]
 fn slow_joints_count() {
-    let arm = "[[joint]]\ndh = { d = 0, a = 0.5, alpha_deg = 0 }\nrange_deg = [-180, 180]\nmass = 5\n\
-        centre_of_mass = [-0.25, 0, 0]\ninertia = { xx = 0.1, yy = 0.2, zz = 0.2 }\n";
-    let turned = arm.replace("alpha_deg = 0", "alpha_deg = 90");
-    let mut task = with_joints(&[arm, &turned, &wheel(0.0)]);
+    let turned = JOINT.replace("alpha_deg = 0", "alpha_deg = 90");
+    let mut task = with_joints(&[JOINT, &turned, &wheel(0.0)]);
     task.goal.base = UnitQuaternion::from_euler_angles(0.1, 0.0, 0.0);
     for times in [1.0, 1e-3, 1e-6] {
         let mut slow = task.clone();

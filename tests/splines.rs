@@ -62,14 +62,20 @@ fn integrated_by(
     UnitQuaternion::from_quaternion(q)
 }
 
+/// Splines for a task, and the coefficients of one that swings about the straight path by up to so much \[rad\].
+fn wavy(task: &Task, pieces: usize, degree: usize, size: f64) -> (Spline, Vec<f64>) {
+    let family = Spline::new(&task.start.joints, &task.goal.joints, pieces, degree);
+    let own = |i: usize| size * f64::sin(2.9 * i as f64);
+    let coefficients = (0..family.dimension()).map(own).collect();
+    (family, coefficients)
+}
+
 /// A panel is one piece or part of one, within which paths are smooth: few steps are enough for all degrees.
 #[test]
 fn rotations_are_those_of_a_plain_integration() {
     let task = paper();
     for (degree, pieces) in [(3, 10), (4, 12), (5, 4)] {
-        let family = Spline::new(&task.start.joints, &task.goal.joints, pieces, degree);
-        let own = |i: usize| 0.3 * f64::sin(2.9 * i as f64);
-        let coefficients: Vec<f64> = (0..family.dimension()).map(own).collect();
+        let (family, coefficients) = wavy(&task, pieces, degree, 0.3);
         let expected = integrated(&task, &family, &coefficients, 2000 / pieces);
         let accuracy = Accuracy { attitude_steps: 3 * pieces.max(8), peak_intervals: 1 };
         let problem = Reorientation::over(task.clone(), family, accuracy);
@@ -87,9 +93,7 @@ fn extremes_on_the_way_are_those_of_a_plain_integration() {
     let task = paper();
     let duration = 7.0;
     for (degree, pieces, wide) in [(3, 10, 0.3), (4, 12, 1.0), (5, 4, 0.1)] {
-        let family = Spline::new(&task.start.joints, &task.goal.joints, pieces, degree);
-        let own = |i: usize| wide * f64::sin(2.9 * i as f64);
-        let coefficients: Vec<f64> = (0..family.dimension()).map(own).collect();
+        let (family, coefficients) = wavy(&task, pieces, degree, wide);
         let (mut turn, mut at, mut fastest) = (0.0, 0.0, 0.0_f64);
         integrated_by(&task, &family, &coefficients, 24_000 / pieces, |tau, q, rate| {
             if q.angle() > turn {

@@ -121,7 +121,7 @@ enum CliError {
     #[error("interrupted: {0}")]
     Interrupted(String),
     /// A motion is not what the user requires.
-    #[error("required, but the motion {0}")]
+    #[error("not as required: the motion {0}")]
     Required(String),
     /// No motion came of it.
     #[error("no motion found: no evaluation gave a finite cost")]

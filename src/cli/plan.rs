@@ -201,7 +201,7 @@ impl Plan {
         };
         let own = Formulated::free_form(Arc::new(problem.clone())).map_err(&refused)?;
         let mut found = search(&settings, &own, &own, longest, self.seed, self.budget)?;
-        // Beside a long time the goal weighs less, so the longer the less does time.
+        // The longer motions are, the less their time may weigh if the goal is to count.
         let own_weight = 1.0 - problem.task().base_weight;
         let mut time_weight = own_weight.min(1.0 / found.assessment.duration);
         for round in 1..=MORE_ROUNDS {

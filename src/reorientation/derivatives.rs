@@ -18,11 +18,7 @@ impl<F: Family> Reorientation<F> {
     /// The time-free cost's parts: the vector part of the base's error, and the duration that each
     /// local peak of rate, acceleration and jerk asks for.
     pub(super) fn linearise(&self, coefficients: &[f64]) -> Linearisation {
-        let slopes = self.width().run(Slopes {
-            problem: self,
-            coefficients,
-            rollout: &self.tables().rollout,
-        });
+        let slopes = self.rotation_slopes(&self.tables().rollout, coefficients);
         let samples = self.samples(coefficients);
         let limits = &self.task().limits;
         let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
@@ -82,12 +78,15 @@ impl<F: Family> Reorientation<F> {
     }
 
     fn error_slopes_by(&self, rollout: &Rollout<F>, coefficients: &[f64]) -> ErrorSlopes {
-        let net = self.width().run(Slopes { problem: self, coefficients, rollout });
-        let (error, slopes) = self.base_error(&net);
+        let (error, slopes) = self.base_error(&self.rotation_slopes(rollout, coefficients));
         ErrorSlopes {
             value: DVector::from_column_slice(error.as_slice()),
             slopes: DMatrix::from_column_slice(3, slopes.ncols(), slopes.as_slice()),
         }
+    }
+
+    fn rotation_slopes(&self, rollout: &Rollout<F>, coefficients: &[f64]) -> RotationSlopes {
+        self.width().run(Slopes { problem: self, coefficients, rollout })
     }
 
     /// The vector part of the base's error, and its slopes by the coefficients.

@@ -125,7 +125,7 @@ impl BaseTurns {
                 moment += turn * turn.transpose();
             }
         }
-        Self { fastest: fastest(task, &ranges, drawn), moment }
+        Self { fastest: fastest(task, &ranges, drawn.into_iter().zip(turns)), moment }
     }
 
     /// Why no motion turns the base so, if none does.
@@ -154,13 +154,17 @@ fn turns_at(task: &Task, positions: &[f64]) -> Vec<Vector3<f64>> {
     (0..positions.len()).map(turn).collect()
 }
 
-/// The largest angular speed of the base: of those drawn, and from there by steps at random, ever shorter.
-fn fastest(task: &Task, ranges: &[[f64; 2]], drawn: Vec<Vec<f64>>) -> f64 {
-    let speed = |at: &[f64]| -> f64 {
-        let turns = turns_at(task, at).into_iter().zip(&task.limits.0);
-        turns.map(|(turn, limits)| limits[0] * turn.norm()).sum()
+/// The largest angular speed of the base: of configurations drawn, with their turns, and from there by steps at random, ever
+/// shorter.
+fn fastest(
+    task: &Task,
+    ranges: &[[f64; 2]],
+    drawn: impl Iterator<Item = (Vec<f64>, Vec<Vector3<f64>>)>,
+) -> f64 {
+    let speed = |turns: &[Vector3<f64>]| -> f64 {
+        turns.iter().zip(&task.limits.0).map(|(turn, limits)| limits[0] * turn.norm()).sum()
     };
-    let all = drawn.into_iter().map(|at| (speed(&at), at));
+    let all = drawn.map(|(at, turns)| (speed(&turns), at));
     let Some((mut best, mut here)) = all.max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
         return 0.0;
     };
@@ -172,7 +176,7 @@ fn fastest(task: &Task, ranges: &[[f64; 2]], drawn: Vec<Vec<f64>>) -> f64 {
             (at + rng.uniform(-width, width)).clamp(*lower, *upper)
         };
         let there: Vec<f64> = here.iter().zip(ranges).map(step).collect();
-        let found = speed(&there);
+        let found = speed(&turns_at(task, &there));
         if found > best {
             (best, here) = (found, there);
         }

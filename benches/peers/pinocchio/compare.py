@@ -11,6 +11,12 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[3] / "src"
 
+BOX = [1.0, 0.35]
+"""Half-widths, by term, of the box that the task is searched in."""
+
+ATTITUDE_STEPS = 24
+"""Magnus steps of its search."""
+
 MOTIONS = 1000
 PASSES = 3
 """Passes through all motions in a turn; the fastest counts."""
@@ -106,7 +112,7 @@ def write_problem(problem, motions):
         rows.append(body(joint, joint["centre_of_mass"]))
     write(problem, rows)
     rng = random.Random(1)
-    box = BOX * len(joints)
+    box = BOX[:terms] * len(joints)
     rows = [[rng.uniform(-width, width) for width in box] for _ in range(MOTIONS)]
     write(motions, [[MOTIONS], *rows])
     # Panels of three steps and six nodes.
