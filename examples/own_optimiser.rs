@@ -41,6 +41,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         Experiment::read(&Experiment::embedded(), &registry())?.with_optimiser(mine).plan()?;
     let folder = Folder::create(path.as_ref(), plan)?;
     folder.run(Options::default(), &Watch::default(), &())?;
-    println!("{}", report::write(&folder.plan, &folder.store, folder.path())?.summary);
+    println!(
+        "{}",
+        report::write(&folder.plan, &folder.store, &report::Target::of(folder.path()))?.summary
+    );
     Ok(())
 }

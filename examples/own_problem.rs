@@ -42,6 +42,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         .plan()?;
     let folder = Folder::create(path.as_ref(), plan)?;
     folder.run(Options::default(), &Watch::default(), &())?;
-    println!("{}", report::write(&folder.plan, &folder.store, folder.path())?.summary);
+    println!(
+        "{}",
+        report::write(&folder.plan, &folder.store, &report::Target::of(folder.path()))?.summary
+    );
     Ok(())
 }

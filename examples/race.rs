@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let plan = Experiment::read(&document, &registry())?.plan()?;
     let folder = Folder::create(path.as_ref(), plan)?;
     folder.run(Options::default(), &Watch::default(), &())?;
-    let report = report::write(&folder.plan, &folder.store, folder.path())?;
+    let report = report::write(&folder.plan, &folder.store, &report::Target::of(folder.path()))?;
     println!("{}\n{}", report.summary, report.page.display());
     Ok(())
 }

@@ -74,7 +74,11 @@ fn fingerprints_look_into_the_robot() {
     let with_robot = |text: String| {
         std::fs::write(folder.path().join("arm.toml"), text).unwrap();
         let task = folder.path().join("task.toml");
-        std::fs::write(&task, "[task]\nrobot = 'arm.toml'\n").unwrap();
+        let text = "[task]\nrobot = 'arm.toml'\n\
+            start = { joints_deg = [10, 30, 45, -20, -25, 40], base_zyx_deg = [6, 15, 7] }\n\
+            goal = { joints_deg = [40, 60, 90, -10, -30, 60], base_zyx_deg = [0, 0, 0] }\n\
+            limits = { rate_deg_s = 60, acceleration_deg_s2 = 70, jerk_deg_s3 = 80 }\n";
+        std::fs::write(&task, text).unwrap();
         let document = Document::read(&task).unwrap();
         fingerprint(&TaskFile::read(&document).unwrap().build(&document).unwrap().0)
     };

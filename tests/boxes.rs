@@ -33,7 +33,10 @@ fn on_base(times: f64, yaw_deg: f64, more: &str) -> (Reorientation, Boxes) {
     std::fs::write(folder.path().join("arm.toml"), table.to_string()).unwrap();
     let path = folder.path().join("task.toml");
     let task = format!(
-        "[task]\nrobot = 'arm.toml'\nstart.base_zyx_deg = [{yaw_deg}, 0, 0]\n[trajectory]\n{more}\n"
+        "[task]\nrobot = 'arm.toml'\n\
+         start = {{ joints_deg = [10, 30, 45, -20, -25, 40], base_zyx_deg = [{yaw_deg}, 0, 0] }}\n\
+         goal = {{ joints_deg = [40, 60, 90, -10, -30, 60], base_zyx_deg = [0, 0, 0] }}\n\
+         limits = {{ rate_deg_s = 60, acceleration_deg_s2 = 70, jerk_deg_s3 = 80 }}\n[trajectory]\n{more}\n"
     );
     std::fs::write(&path, task).unwrap();
     read(&Document::read(&path).unwrap())

@@ -205,7 +205,10 @@ fn more_terms_hasten_what_reached_the_goal() {
     let heavy = robot.replacen("mass = 600", "mass = 6000", 1).replacen(inertia, tenfold, 1);
     std::fs::write(folder.path().join("arm.toml"), heavy).unwrap();
     let path = folder.path().join("task.toml");
-    let text = "[task]\nrobot = 'arm.toml'\nstart.base_zyx_deg = [8, 0, 0]\n[trajectory]\nterms = 4\n\
+    let text = "[task]\nrobot = 'arm.toml'\n\
+        start = { joints_deg = [10, 30, 45, -20, -25, 40], base_zyx_deg = [8, 0, 0] }\n\
+        goal = { joints_deg = [40, 60, 90, -10, -30, 60], base_zyx_deg = [0, 0, 0] }\n\
+        limits = { rate_deg_s = 60, acceleration_deg_s2 = 70, jerk_deg_s3 = 80 }\n[trajectory]\nterms = 4\n\
         box.coefficient = [1, 0.35, 0.15, 0.05]\n";
     std::fs::write(&path, text).unwrap();
     let document = Document::read(&path).unwrap();

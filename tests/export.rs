@@ -5,11 +5,13 @@ use std::fs;
 use std::num::NonZeroU64;
 
 use driftless::experiment::{
-    self, Entrant, Identity, Instance, Plan, Progress, Record, RunSpec, Store,
+    self, Experiment, Identity, Instance, Plan, Progress, Record, RunSpec, Store,
 };
-use driftless::export::{ExportedRun, Suite, SuiteError, SuiteFormat, write_suite};
+use driftless::export::{ExportedRun, Function, Suite, SuiteFormat, write_suite};
 use driftless::functions::{Analytic, TestFunction};
+use driftless::input::Document;
 use driftless::optimiser::Settings;
+use driftless::registry;
 use driftless::search::Watch;
 use driftless::search::{Bounds, Evaluation, Failure, Problem};
 
@@ -140,8 +142,11 @@ fn groups_may_have_several_dimensions() {
         write_suite(&folder.path().join(out), format, &suite).unwrap();
     }
     let text = |path: &str| fs::read_to_string(folder.path().join(path)).unwrap();
+    let [f1, f2] = [0, 1].map(|place: usize| suite.functions[place].number);
+    let own = |place: usize| u64::from(suite.functions[0].instances[place].number);
     let index: serde_json::Value =
-        serde_json::from_str(&text("ioh/random/IOHprofiler_f1_half_mixed.json")).unwrap();
+        serde_json::from_str(&text(&format!("ioh/random/IOHprofiler_f{f1}_half_mixed.json")))
+            .unwrap();
     let of = |i: usize| {
         let scenario = &index["scenarios"][i];
         let runs = scenario["runs"].as_array().unwrap();
@@ -150,15 +155,17 @@ fn groups_may_have_several_dimensions() {
         instances.dedup();
         (scenario["dimension"].as_u64().unwrap(), instances, runs.len())
     };
-    assert_eq!((of(0), of(1)), ((2, vec![1, 2], 16), (3, vec![3], 8)));
-    let index = text("coco/random/bbobexp_f1.info");
-    let entries: Vec<&str> = index.lines().filter(|line| line.starts_with("data_f1/")).collect();
+    assert_eq!((of(0), of(1)), ((2, vec![own(0), own(1)], 16), (3, vec![own(2)], 8)));
+    let index = text(&format!("coco/random/bbobexp_f{f1}.info"));
+    let entries: Vec<&str> =
+        index.lines().filter(|line| line.starts_with(&format!("data_f{f1}/"))).collect();
     let numbers = entries.iter().flat_map(|entry| entry.split(", ").skip(1));
     let numbers: Vec<u64> =
         numbers.map(|cell| cell.split(':').next().unwrap().parse().unwrap()).collect();
-    assert_eq!(numbers, (1..=24).collect::<Vec<u64>>());
-    assert!(entries[1].starts_with("data_f1/bbobexp_f1_DIM3.dat, 17:"), "{index}");
-    for line in text("coco/scp/data_f2/bbobexp_f2_DIM2.tdat").lines() {
+    let expected = (0..3).flat_map(|i| (1..=8).map(move |seed| 2_000_000 * own(i) + seed));
+    assert_eq!(numbers, expected.collect::<Vec<u64>>());
+    assert!(entries[1].starts_with(&format!("data_f{f1}/bbobexp_f{f1}_DIM3.dat, ")), "{index}");
+    for line in text(&format!("coco/scp/data_f{f2}/bbobexp_f{f2}_DIM2.tdat")).lines() {
         assert!(line.starts_with('%') || line == "1 0 1e300 1e300 1e300", "{line}");
     }
 }
@@ -178,25 +185,47 @@ fn folders_are_told_apart() {
     assert_eq!(folders[..4], ["a_b", "a_b-2", "A_b-3", "a_b-2-2"]);
 }
 
-/// Sixteen bits number the functions.
+/// Number and name of a function, and dimension and number of each of its instances.
+type Numbered = (u32, String, Vec<(u16, u32)>);
+
+/// The functions of an experiment.
+fn numbers(experiment: &str) -> Vec<Numbered> {
+    let text = format!("name = 'numbers'\nseeds = 2\n{experiment}\n[[optimiser]]\nrandom = {{}}\n");
+    let document = Document::embedded("numbers.toml", &text);
+    let plan = Experiment::read(&document, &registry()).unwrap().plan().unwrap();
+    let functions = Suite::new(&plan, &[]).unwrap().functions.into_iter();
+    let of = |f: Function| {
+        (f.number, f.name, f.instances.iter().map(|i| (i.dimension, i.number)).collect())
+    };
+    functions.map(of).collect()
+}
+
+/// A function has one number, and an instance too, whatever else an experiment has; dimensions of one function are no functions.
 #[test]
-fn too_many_functions_are_an_error() {
-    let sphere = Instance::of_problem(
-        "sphere",
-        Identity::new().with("version", 0),
-        Analytic::new(TestFunction::Sphere, 2, 0),
-    );
-    let instance = |i: usize| {
-        let mut instance = sphere.clone();
-        (instance.label, instance.group) = (i.to_string(), i.to_string());
-        instance
+fn numbers_mean_the_same_in_every_experiment() {
+    let spheres = numbers("[functions]\nname = ['sphere']\ndimension = [5, 10]\ninstances = 2");
+    let instances = vec![(5, 1), (5, 2), (10, 1), (10, 2)];
+    assert_eq!(spheres, [(1, "sphere".to_owned(), instances)]);
+    let two = numbers("[functions]\nname = ['rastrigin', 'sphere']\ndimension = [5]");
+    let named = |number, name: &str| (number, name.to_owned(), vec![(5, 1)]);
+    assert_eq!(two, [named(4, "rastrigin"), named(1, "sphere")]);
+
+    let alone = numbers("[task.limits]\njerk_deg_s3 = 40");
+    let [_, stated, _] = &numbers("[sweep]\njerk_limit_deg_s3 = [20, 40, 80]")[..] else {
+        panic!()
     };
-    let plan = |count: usize| {
-        let instances = (0..count).map(instance).collect();
-        Plan::over("many", instances, [] as [Entrant; 0], number(1), number(1))
-    };
-    let suite = |count| Suite::new(&plan(count), &[]);
-    assert_eq!(suite(65_535).unwrap().functions.len(), 65_535);
-    let error = suite(65_536).unwrap_err();
-    assert!(matches!(error, SuiteError::TooMany { found: 65_536, .. }), "{error}");
+    assert_eq!((alone[0].0, &alone[0].2), (stated.0, &stated.2));
+    let papers = numbers("[task]");
+    assert_ne!(papers[0].0, stated.0);
+    let poses = numbers("[sweep]\npose = [{ start = { base_zyx_deg = [1, 2, 3] } }, {}]");
+    assert_eq!((poses.len(), poses[0].0), (1, papers[0].0));
+    assert_eq!(poses[0].2[1], papers[0].2[0], "the second pose is the paper's");
+    let mut all: Vec<u32> = numbers("[sweep]\nrandom_poses = { count = 100 }")[0]
+        .2
+        .iter()
+        .map(|(_, number)| *number)
+        .collect();
+    all.sort_unstable();
+    all.dedup();
+    assert_eq!(all.len(), 100);
 }

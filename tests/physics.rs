@@ -50,7 +50,12 @@ fn in_box(unit: &[f64]) -> Vec<f64> {
 
 /// The base's rotation by Runge–Kutta in time, along eq. 11's polynomial in powers of `t` with the
 /// coefficients of eq. 24: nothing shared with the library but the base's rate.
-fn rotation_in_time(problem: &Reorientation, alpha: &[f64], t_f: f64) -> UnitQuaternion<f64> {
+fn rotation_in_time(
+    problem: &Reorientation,
+    alpha: &[f64],
+    t_f: f64,
+    steps: u32,
+) -> UnitQuaternion<f64> {
     let task = problem.task();
     let joints = task.robot.joints().enumerate().map(|(i, joint)| {
         let [low, high] = joint.range;
@@ -74,7 +79,6 @@ fn rotation_in_time(problem: &Reorientation, alpha: &[f64], t_f: f64) -> UnitQua
         }
         Vector3::from(base_twist(&task.robot, &angles, &rates).angular)
     };
-    let steps = 4000;
     let h = t_f / f64::from(steps);
     let rate = |q: Quaternion<f64>, t: f64| q * Quaternion::from_imag(omega(t) * 0.5);
     let mut q = Quaternion::identity();
@@ -360,10 +364,47 @@ proptest! {
         let ours = net_rotation(robot, &path, Accuracy::FINE.attitude_steps);
         for t_f in [t_f, 2.0 * t_f] {
             let alpha = problem.family().to_alpha(&coefficients, t_f);
-            let theirs = rotation_in_time(&problem, &alpha, t_f);
+            let theirs = rotation_in_time(&problem, &alpha, t_f, 4000);
             prop_assert!(ours.angle_to(&theirs) < 1e-9, "{t_f} s: {}", ours.angle_to(&theirs));
         }
     }
+}
+
+/// Joints that go hundreds of times through their ranges: where the base ends is what Runge–Kutta in time has it in 400,000 steps,
+/// and peaks are those of a look at 2,000,000 places. Beyond what can be evaluated, that is said.
+#[test]
+fn wild_motions_are_evaluated_finely_or_said_to_be_uncertain() {
+    let problem = paper().0;
+    let task = problem.task();
+    let wild = |size: f64| -> Vec<f64> {
+        (0..12_u8).map(|i| size * (1.3 * f64::from(i) + 0.4).sin()).collect()
+    };
+    for (size, turns_at_least) in [(1.0, 0.1), (100.0, 20.0), (1000.0, 200.0)] {
+        let coefficients = wild(size);
+        let motion = problem.certify(&coefficients, None);
+        let alpha = problem.family().to_alpha(&coefficients, motion.duration);
+        let net = rotation_in_time(&problem, &alpha, motion.duration, 400_000);
+        let residual = (task.start.base * net).angle_to(&task.goal.base);
+        let miss = (motion.residual() - residual).abs();
+        assert!(miss < 1e-8, "{size}: {} instead of {residual}", motion.residual());
+        let error = motion.residual_error.unwrap();
+        assert!(error < 1e-9 && miss < 1e-8, "{size}: {error}");
+        let path = problem.family().path(&coefficients);
+        let joint = path.joints().next().unwrap();
+        let (mut way, mut jerk, mut before) = (0.0, 0.0_f64, task.start.joints[0]);
+        for i in 0..=2_000_000 {
+            let at = joint.derivatives::<4>(f64::from(i) / 2e6);
+            way += (at[0] - before).abs();
+            before = at[0];
+            jerk = jerk.max(at[3].abs() / motion.duration.powi(3));
+        }
+        assert!(way > turns_at_least, "{size}: {way} rad");
+        let peak = motion.peaks.0[0][2].value;
+        assert!((peak / jerk - 1.0).abs() < 1e-6, "{size}: {peak} instead of {jerk}");
+    }
+    let motion = problem.certify(&wild(1e7), None);
+    assert_eq!(motion.residual_error, Some(f64::INFINITY));
+    assert!(!motion.is_within(std::f64::consts::PI));
 }
 
 /// The default boxes hold the published solution and the best known one. The latter's coefficients

@@ -4,7 +4,7 @@
 
 use std::fs;
 
-use driftless::experiment::schema::{Cell, Column, clocks, runs, traces};
+use driftless::experiment::schema::{Cell, Column, clocks, plan, runs, traces};
 use driftless::experiment::{Experiment, Folder, Options, Quantity};
 use driftless::input::Document;
 use driftless::registry;
@@ -34,6 +34,7 @@ fn the_page_of_results_lists_every_column() {
         listed(runs::COLUMNS),
         listed(traces::COLUMNS),
         listed(clocks::COLUMNS),
+        listed(plan::COLUMNS),
         described(task.facts()),
         described(task.measures()),
     ] {
@@ -66,10 +67,16 @@ fn stored_tables_have_the_columns_in_order() {
         let file = fs::read_dir(folder.path().join(table)).unwrap().next().unwrap().unwrap();
         let file = fs::File::open(file.path()).unwrap();
         let frame = ParquetReader::new(file).finish().unwrap();
-        let found: Vec<&str> =
-            frame.get_column_names().into_iter().map(PlSmallStr::as_str).collect();
-        assert_eq!(found, names(columns, facts, measures), "{table}");
+        assert_eq!(columns_of(&frame), names(columns, facts, measures), "{table}");
     }
+    let list = fs::File::open(folder.path().join("plan.parquet")).unwrap();
+    let list = ParquetReader::new(list).finish().unwrap();
+    assert_eq!(columns_of(&list), names(plan::COLUMNS, facts, measures));
+    assert_eq!(list.height(), results.plan.runs.len());
+}
+
+fn columns_of(frame: &DataFrame) -> Vec<&str> {
+    frame.get_column_names().into_iter().map(PlSmallStr::as_str).collect()
 }
 
 /// What a run's key is the hash of: stored runs are found by it, so it changes only where results do.

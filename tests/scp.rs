@@ -179,8 +179,10 @@ fn gets_as_near_as_others_where_the_goal_is_out_of_reach() {
     let robot: Vec<_> = include_str!("../src/robot/xiao2023.toml").split("[[joint]]").collect();
     std::fs::write(folder.path().join("arm.toml"), robot[..4].join("[[joint]]")).unwrap();
     let path = folder.path().join("task.toml");
-    let text = "[task]\nrobot = 'arm.toml'\nstart.joints_deg = [10, 30, 45]\n\
-        goal.joints_deg = [40, 60, 90]\n";
+    let text = "[task]\nrobot = 'arm.toml'\n\
+        start = { joints_deg = [10, 30, 45], base_zyx_deg = [6, 15, 7] }\n\
+        goal = { joints_deg = [40, 60, 90], base_zyx_deg = [0, 0, 0] }\n\
+        limits = { rate_deg_s = 60, acceleration_deg_s2 = 70, jerk_deg_s3 = 80 }\n";
     std::fs::write(&path, text).unwrap();
     let document = Document::read(&path).unwrap();
     let (problem, boxes) = TaskFile::read(&document).unwrap().build(&document).unwrap();

@@ -69,7 +69,7 @@ fn durations_follow_the_jerk_limit_until_a_rate_joins() {
     let best = best_motions(&plan);
     let reference = &best[1];
     let problem = task(&plan.instances[1]);
-    let motion = problem.assess(&reference.coefficients, Some(reference.duration));
+    let motion = problem.certify(&reference.coefficients, Some(reference.duration));
     let reached = |order: usize, limit: f64| {
         let peaks = motion.peaks.0.iter().map(|peaks| peaks[order].value.to_degrees());
         limit / peaks.fold(0.0, f64::max)

@@ -57,6 +57,11 @@ impl<F: Family> Rollout<F> {
         Self { panels, nodes: family.nodes(times), moments: moments(&places, panels) }
     }
 
+    /// Magnus steps that it makes.
+    pub fn steps(&self) -> usize {
+        STEPS * self.panels
+    }
+
     /// Where in the grid the panels from `first` on have their times of a node.
     #[inline(always)]
     pub(super) fn place(first: usize, node: usize) -> usize {

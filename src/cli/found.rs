@@ -46,6 +46,8 @@ pub(super) struct OtherFamily {
 #[derive(Debug, Serialize)]
 pub(super) struct PlanJson<'a> {
     task: String,
+    /// Keys of the task that are the paper's.
+    inherited: Vec<&'static str>,
     optimiser: &'a str,
     seed: u64,
     #[serde(flatten)]
@@ -113,12 +115,14 @@ impl<F: SearchedFamily> Found<F> {
         task: String,
         optimiser: &'a str,
         seed: u64,
+        inherited: Vec<&'static str>,
         known: Option<&BestKnown>,
         other: Option<OtherFamily>,
     ) -> PlanJson<'a> {
         let problem = self.problem.task();
         PlanJson {
             task,
+            inherited,
             optimiser,
             seed,
             family: problem.family().spec(),
@@ -173,7 +177,7 @@ impl<F: SearchedFamily> Found<F> {
     /// Whether the goal is reached, and limits are kept.
     pub(super) fn verdict(&self) -> String {
         let task = self.problem.task().task();
-        let is_there = self.assessment.residual() <= task.goal_tolerance;
+        let is_there = self.assessment.is_within(task.goal_tolerance);
         let goal = if is_there { "reaches" } else { "misses" };
         let limits = if Reach::keeps_limits(&self.assessment) { "keeps" } else { "does not keep" };
         format!(
@@ -212,14 +216,25 @@ impl<F: SearchedFamily> Found<F> {
             ),
             Reach::NotFound if self.interrupted => return,
             Reach::NotFound => {
+                let weight = task.task().base_weight;
                 let advice = match task.family().spec().name() {
+                    FamilyName::SinePolynomial if task.is_held_by_time(&self.coefficients) => {
+                        note!(
+                            "warning: the base ends {residual:.6}° from its goal: it weighs too little here for the time that it \
+                             would take to end nearer. A `weights.base` above {weight} may bring it there, as \
+                             `--family spline` may, which takes the goal for a demand"
+                        );
+                        return;
+                    }
                     _ if self.spent.evaluations >= budget => "a larger `--budget` may find one",
                     FamilyName::Spline => "another `--seed` or more `--pieces` may find one",
                     FamilyName::SinePolynomial => {
                         "`--family spline`, more terms or another optimiser, such as a hybrid, may find one"
                     }
                 };
-                let missed = if self.assessment.residual() > task.task().goal_tolerance {
+                let missed = if self.assessment.residual_error.is_none_or(f64::is_infinite) {
+                    "as far as can be told of a motion that swings so often, and no other was found"
+                } else if !self.assessment.is_within(task.task().goal_tolerance) {
                     "and no motion was found that reaches it"
                 } else {
                     "but beyond limits or ranges, and no motion was found that keeps them"

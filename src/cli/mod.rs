@@ -123,6 +123,11 @@ enum CliError {
     /// A motion is not what the user requires.
     #[error("not as required: the motion {0}")]
     Required(String),
+    /// A report of more runs was not replaced.
+    #[cfg(feature = "harness")]
+    #[error("{0}")]
+    #[diagnostic(help("`--replace` replaces it; `--out DIR` puts the report elsewhere"))]
+    Kept(String),
     /// No motion came of it.
     #[error("no motion found: no evaluation gave a finite cost")]
     #[diagnostic(help("are all limits, lengths, masses and boxes of a sensible size?"))]
@@ -197,6 +202,9 @@ impl From<InputError> for CliError {
         match error {
             InputError::Read { path, source } => Self::Unreadable { path, source },
             InputError::Content(mistake) => {
+                if let Some(message) = mistake.in_a_window() {
+                    return Self::Usage { message, help: mistake.help };
+                }
                 let name = mistake.path.display().to_string();
                 Self::Input {
                     message: mistake.message,

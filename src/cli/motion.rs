@@ -79,6 +79,8 @@ pub(super) struct AssessmentJson {
     j: f64,
     t_f: f64,
     residual_deg: f64,
+    /// Null where it was not estimated, or the motion is too wild to.
+    residual_error_deg: Option<f64>,
     penalty: f64,
     peaks: PeaksDeg,
 }
@@ -97,6 +99,7 @@ impl From<&Assessment> for AssessmentJson {
             j: assessment.cost,
             t_f: assessment.duration,
             residual_deg: assessment.residual().to_degrees(),
+            residual_error_deg: assessment.residual_error.map(f64::to_degrees),
             penalty: assessment.penalty(),
             peaks: PeaksDeg {
                 rate_deg_s: all(0),
@@ -106,6 +109,9 @@ impl From<&Assessment> for AssessmentJson {
         }
     }
 }
+
+/// Errors of the residual that its digits show \[°\].
+const SHOWN_ERROR: f64 = 5e-7;
 
 /// Intervals in which a motion is looked at between its start and its end.
 const LOOKS: usize = 2000;
@@ -173,7 +179,14 @@ impl fmt::Display for Told<'_> {
         let Self { task, assessment, excursions } = self;
         writeln!(f, "  J              {:.6}", assessment.cost)?;
         writeln!(f, "  duration       {:.6} s", assessment.duration)?;
-        writeln!(f, "  base residual  {:.6}°", assessment.residual().to_degrees())?;
+        write!(f, "  base residual  {:.6}°", assessment.residual().to_degrees())?;
+        match assessment.residual_error.map(f64::to_degrees) {
+            Some(error) if error.is_infinite() => {
+                writeln!(f, " (uncertain: the motion swings too often)")?;
+            }
+            Some(error) if error >= SHOWN_ERROR => writeln!(f, " ± {error:.6}°")?,
+            _ => writeln!(f)?,
+        }
         writeln!(f, "  penalty        {:.6}", assessment.penalty())?;
         let names = task.robot.joints().map(|joint| joint.name.chars().count());
         let width = names.max().unwrap_or_default().max(12);

@@ -239,13 +239,17 @@ impl Plan {
         task: TaskTable,
     ) -> Result<(), CliError> {
         let known = BestKnown::of(found.problem.task());
+        let inherited = task.inherited();
         if self.json {
             let task = shown(self.file.as_ref(), "xiao2023");
-            let json = found.json(task, &self.optimiser, self.seed, known, other);
+            let json = found.json(task, &self.optimiser, self.seed, inherited, known, other);
             say!("{}", serde_json::to_string_pretty(&json).unwrap_or_default());
         } else {
             let file = shown(self.file.as_ref(), "the paper's task");
             say!("{file} by {}, seed {}", self.optimiser, self.seed);
+            if self.file.is_some() && !inherited.is_empty() {
+                say!("  not stated     {} (as in the paper's task)", inherited.join(", "));
+            }
             say!("{}", found.told(known, other));
         }
         found.warn(self.budget);

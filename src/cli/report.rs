@@ -1,6 +1,6 @@
 //! `driftless report`.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use clap::Args;
 use textwrap::{WordSeparator, WordSplitter};
@@ -9,29 +9,46 @@ use super::CliError;
 use super::results::ResultsFolder;
 use super::warnings::warn_of_budgets;
 use crate::exhibit::Finding;
-use crate::experiment::{Plan, Store, standing};
-use crate::report::write;
+use crate::experiment::{Folder, standing};
+use crate::report::{Target, write};
 
 /// Make tables, figures and a page from what is stored
 #[derive(Debug, Args)]
 pub(super) struct Report {
     #[command(flatten)]
     results: ResultsFolder,
+    /// Folder for page, tables and figures, instead of that of the results
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace a report of more runs than are stored now
+    #[arg(long)]
+    replace: bool,
 }
 
 impl Report {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let folder = self.results.open()?;
-        report(&folder.plan, &folder.store, folder.path())
+        let mut target = Target::of(folder.path());
+        if let Some(out) = &self.out {
+            target = target.into(out);
+        }
+        if self.replace {
+            target = target.replacing();
+        }
+        match report(&folder, &target)? {
+            Some(kept) => Err(CliError::Kept(kept)),
+            None => Ok(()),
+        }
     }
 }
 
 /// Columns of a line of text.
 const LINE: usize = 100;
 
-/// Prints what all stored runs of the plan say; writes and draws it.
-pub(super) fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
-    let report = write(plan, store, folder)?;
+/// Prints what all stored runs of the plan say; writes and draws it. Where a report of more runs stays instead, says so.
+pub(super) fn report(folder: &Folder, target: &Target<'_>) -> Result<Option<String>, CliError> {
+    let Folder { plan, store, .. } = folder;
+    let report = write(plan, store, target)?;
     if report.stored < plan.runs.len() {
         say!("{} of {} runs are stored so far", report.stored, plan.runs.len());
     }
@@ -47,12 +64,24 @@ pub(super) fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), Cl
             .word_splitter(WordSplitter::NoHyphenation);
         say!("\n{question}\n{}", textwrap::fill(answer, line));
     }
-    say!("\n{}; beside it tables/ and figures/", report.page.display());
+    if report.kept.is_none() {
+        say!("\n{}; beside it tables/ and figures/", report.page.display());
+    }
     if report.failed > 0 {
         note!("warning: {} of {} runs failed or found nothing", report.failed, report.stored);
     }
-    if let Some(unread) = standing(plan, store)?.unread() {
+    let standing = standing(plan, store)?;
+    if let Some(unread) = standing.unread() {
         note!("note: {unread}");
     }
-    Ok(())
+    if let Some(others) = standing.others() {
+        note!("note: {others}");
+    }
+    Ok(report.kept.map(|shown| {
+        format!(
+            "{} shows {shown} runs, of this experiment {} are stored: it stays as it is",
+            report.page.display(),
+            report.stored
+        )
+    }))
 }

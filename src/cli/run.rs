@@ -14,6 +14,7 @@ use crate::experiment::{
     Store,
 };
 use crate::registry::registry;
+use crate::report::Target;
 
 /// Run an experiment: every optimiser on every instance for every seed
 #[derive(Debug, Args)]
@@ -92,11 +93,12 @@ impl Run {
         let path = self.out.clone().unwrap_or_else(|| Path::new("results").join(&plan.name));
         check_possible(&plan, &path)?;
         let folder = Folder::create(&path, plan)?;
-        if folder.was_another {
+        if let Some(earlier) = &folder.earlier {
             note!(
-                "note: {} holds runs of another version of this experiment; they stay there, and those \
-                 that no longer belong are left out of the summary",
-                path.display()
+                "note: {} holds runs of another version of this experiment; they stay there and are left out of the summary. \
+                 That version is kept as {}",
+                path.display(),
+                earlier.join("experiment.toml").display()
             );
         }
         self.run_missing(&folder, shard)?;
@@ -113,7 +115,12 @@ impl Run {
                 );
                 Ok(())
             }
-            _ => report(plan, &folder.store, &path),
+            _ => {
+                if let Some(kept) = report(&folder, &Target::of(&path))? {
+                    note!("note: {kept}; `driftless report --replace` replaces it");
+                }
+                Ok(())
+            }
         }
     }
 

@@ -144,8 +144,8 @@ fn tell(results: &Folder, standing: &Standing, batches: usize) -> Result<(), Cli
     if let Some(unread) = standing.unread() {
         say!("{unread}");
     }
-    if standing.others > 0 {
-        say!("{} other runs are stored: of another version of the experiment", standing.others);
+    if let Some(others) = standing.others() {
+        say!("{others}");
     }
     if all.missing() > 0 {
         say!("what is missing: {}", command(results));

@@ -10,9 +10,13 @@ use super::plan::{Plan, RunSpec};
 use super::runner::{Progress, RunError, run};
 use super::shard::Shard;
 use super::store::{Store, StoreError};
+use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::output::{FileError, check_writable, create_folder, write_file};
 use crate::search::Watch;
+
+/// Where other versions of the experiment are kept.
+const EARLIER: &str = "earlier";
 
 /// What the experiment is kept in.
 const EXPERIMENT: &str = "experiment.toml";
@@ -25,8 +29,9 @@ pub struct Folder {
     pub plan: Plan,
     /// Its stored runs.
     pub store: Store,
-    /// Whether it held runs of another version of the experiment when it was opened.
-    pub was_another: bool,
+    /// Of a folder that holds runs of another version of the experiment, which are not this one's: where its files have been
+    /// put.
+    pub earlier: Option<PathBuf>,
 }
 
 /// How to do what is missing.
@@ -96,7 +101,8 @@ pub enum FolderError {
 
 impl Folder {
     /// Keeps a plan's experiment in a folder, made if need be, for its runs to be stored beside it. The folder
-    /// may hold runs of the experiment already; those of another version of it stay there.
+    /// may hold runs of the experiment already. Those that only another version of it has stay there, and that version's files
+    /// are kept in `earlier/`.
     pub fn create(path: &Path, plan: Plan) -> Result<Self, FolderError> {
         check_name(path, &plan.name)?;
         let (experiment, mut files) = plan.experiment.clone().kept()?;
@@ -112,11 +118,12 @@ impl Folder {
             }
         }
         let store = Store::open(path)?;
-        let mut was_another = false;
+        let earlier = keep_earlier(path, &files, &plan, &store)?;
         for (file, text) in files {
-            was_another = keep(&file, &text)?;
+            keep(&file, &text)?;
         }
-        Ok(Self { path: path.to_owned(), plan, store, was_another })
+        store.list_plan(&plan)?;
+        Ok(Self { path: path.to_owned(), plan, store, earlier })
     }
 
     /// Opens a folder of results to read them; nothing is written. Subjects and optimisers that this program does not
@@ -128,7 +135,7 @@ impl Folder {
         }
         let plan = Experiment::read(&Document::read(&file)?, registry)?.plan()?;
         let store = Store::existing(path);
-        Ok(Self { path: path.to_owned(), plan, store, was_another: false })
+        Ok(Self { path: path.to_owned(), plan, store, earlier: None })
     }
 
     /// Where it is.
@@ -183,17 +190,46 @@ fn check_name(folder: &Path, name: &str) -> Result<(), FolderError> {
     }
 }
 
-/// Writes a text, unless it is there already: then other shards may be reading it. Whether another
-/// text gave way to it.
-fn keep(path: &Path, text: &str) -> Result<bool, FolderError> {
+/// Writes a text, unless it is there already: then other shards may be reading it.
+fn keep(path: &Path, text: &str) -> Result<(), FolderError> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
     }
-    let before = std::fs::read_to_string(path).ok();
-    if before.as_deref() == Some(text) {
-        check_writable(path)?;
-    } else {
-        write_file(path, text.as_bytes())?;
+    if std::fs::read_to_string(path).ok().as_deref() == Some(text) {
+        return Ok(check_writable(path)?);
     }
-    Ok(before.is_some_and(|before| before != text))
+    Ok(write_file(path, text.as_bytes())?)
+}
+
+/// Copies the experiment that a folder has, with its robots and tasks, where it is another than that of these files and some of
+/// its runs are stored that the plan does not have. Where to.
+fn keep_earlier(
+    folder: &Path,
+    files: &[(PathBuf, String)],
+    plan: &Plan,
+    store: &Store,
+) -> Result<Option<PathBuf>, FolderError> {
+    let read = |path: &Path| std::fs::read_to_string(path).ok();
+    let differs =
+        |(path, text): &(PathBuf, String)| read(path).is_some_and(|before| before != *text);
+    if !files.iter().any(differs) {
+        return Ok(None);
+    }
+    let planned = plan.places();
+    if store.keys()?.iter().all(|key| planned.contains_key(key.as_str())) {
+        return Ok(None);
+    }
+    let Some(experiment) = read(&folder.join(EXPERIMENT)) else { return Ok(None) };
+    let copy = folder.join(EARLIER).join(digest(&experiment));
+    let mut names = vec![PathBuf::from(EXPERIMENT), PathBuf::from("robot.toml")];
+    for part in ["robots", "tasks"] {
+        let entries = std::fs::read_dir(folder.join(part)).into_iter().flatten().flatten();
+        names.extend(entries.map(|entry| Path::new(part).join(entry.file_name())));
+    }
+    for name in names {
+        if let Some(text) = read(&folder.join(&name)) {
+            keep(&copy.join(name), &text)?;
+        }
+    }
+    Ok(Some(copy))
 }

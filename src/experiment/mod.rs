@@ -38,6 +38,6 @@ pub use runner::{Progress, RunError, run};
 pub use shard::{Shard, ShardChoice, ShardError};
 pub use standing::{FailedRun, Standing, Tally, standing};
 pub use store::{Compaction, Store, StoreError};
-pub use subject::{Coordinate, Instance, Results, Subject};
+pub use subject::{Coordinate, Instance, Number, Numbers, Results, Subject};
 pub use targets::TargetTable;
 pub use value::{Judgement, Quantity, Value, ValueKind};

@@ -57,9 +57,9 @@ table! {
     RECIPE = "recipe", Text, "everything that determines the result, as JSON";
     EXPERIMENT = "experiment", Text, "name of the experiment that made it";
     PROBLEM = "problem", Text, "name of the subject: `reorientation`, a test function's, or that given by the program that made it";
-    INSTANCE = "instance", Text, "what tells the instance from the others; empty where there is but one";
-    GROUP = "group", Text, "what the instance has in common with those it is summarised with: all but pose, or shift and rotation";
-    OPTIMISER = "optimiser", Text, "label of the optimiser";
+    INSTANCE = "instance", Text, "what told the instance from the others when the run was made; empty where there was but one";
+    GROUP = "group", Text, "what the instance had in common with those it was summarised with: all but pose, or shift and rotation";
+    OPTIMISER = "optimiser", Text, "label of the optimiser when the run was made";
     FORMULATION = "formulation", Text, "formulation that it searched; null where the subject has but one";
     SETTINGS = "settings", Text, "all settings as JSON";
     FACTS = "facts of the subject", OfSubject, "what there is to know of the subject: see below";
@@ -85,6 +85,19 @@ table! {
     COMMIT = "commit", Text, "its commit";
     CPU = "cpu", Text, "the processor";
     DATE = "date", Text, "when the run ended, UTC";
+}
+
+table! {
+    /// One row per run that the experiment has, stored or not, with the labels that it gives them now.
+    plan:
+    KEY = "key", Text, "the run's key";
+    PROBLEM = "problem", Text, "name of the subject";
+    INSTANCE = "instance", Text, "what tells the instance from the others; empty where there is but one";
+    GROUP = "group", Text, "what the instance has in common with those it is summarised with";
+    OPTIMISER = "optimiser", Text, "label of the optimiser, which no other has";
+    FORMULATION = "formulation", Text, "formulation that it searches; null where the subject has but one";
+    SEED = "seed", Count, "seed";
+    BUDGET = "budget", Count, "evaluations allowed";
 }
 
 table! {

@@ -21,6 +21,17 @@ pub struct Standing {
 }
 
 impl Standing {
+    /// What there is to say of runs that do not belong to the plan, if there are any.
+    pub fn others(&self) -> Option<String> {
+        let (s, are) = if self.others == 1 { ("", "is") } else { ("s", "are") };
+        (self.others > 0).then(|| {
+            format!(
+                "{} other run{s} {are} stored: of another version of the experiment",
+                self.others
+            )
+        })
+    }
+
     /// What there is to say of runs in other formats, if there are any.
     pub fn unread(&self) -> Option<String> {
         let count = self.formats.values().sum::<usize>();

@@ -124,6 +124,12 @@ pub trait Subject: Send + Sync {
         Exhibits::default()
     }
 
+    /// How exports number it, the same in every experiment; none where its group is a function, and its identity tells
+    /// instances apart.
+    fn numbers(&self) -> Option<Numbers> {
+        None
+    }
+
     /// Whether only the program that made the results can search it.
     #[doc(hidden)]
     fn is_foreign(&self) -> bool {
@@ -134,6 +140,24 @@ pub trait Subject: Send + Sync {
     fn as_any(&self) -> Option<&dyn Any> {
         None
     }
+}
+
+/// How exports number a subject.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Numbers {
+    /// Of the function that it is an instance of, whatever its number of variables.
+    pub function: Number,
+    /// Of the instance.
+    pub instance: Number,
+}
+
+/// How exports number a function, or an instance of one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Number {
+    /// With the number that it is known by, from 1 to 9,999.
+    Known(u32),
+    /// With one that follows from what determines it.
+    Of(Identity),
 }
 
 /// One problem of an experiment.

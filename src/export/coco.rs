@@ -21,6 +21,9 @@ const PRECISION: f64 = 1e-8;
 /// Targets a decade: `10^(i/5)` for whole `i`.
 const TARGETS: f64 = 5.0;
 
+/// Numbers of trials that each instance has, more than there can be seeds.
+const SEEDS: u64 = 2_000_000;
+
 /// Marks a decade of evaluations: `10^(i/20)`, rounded down.
 const MARKS: f64 = 20.0;
 
@@ -31,7 +34,8 @@ const NOTHING: f64 = 1e300;
 /// Writes all files into a folder.
 pub(super) fn write(suite: &Suite, folder: &Path) -> Result<(), SuiteError> {
     for ((algorithm, function), by_dimension) in suite.cells() {
-        let (id, function) = (function + 1, &suite.functions[function]);
+        let function = &suite.functions[function];
+        let id = function.number;
         let algorithm = &suite.algorithms[algorithm];
         let home = folder.join(&algorithm.folder);
         let data = format!("data_f{id}");
@@ -39,13 +43,14 @@ pub(super) fn write(suite: &Suite, folder: &Path) -> Result<(), SuiteError> {
         let mut index = String::new();
         for (dimension, trials) in by_dimension {
             let path = format!("{data}/bbobexp_f{id}_DIM{dimension}.dat");
-            head(&mut index, suite, algorithm, function, (id, dimension));
+            let group = trials.first().map_or("", |trial| suite.objective(trial).group.as_str());
+            head(&mut index, algorithm, function, (id, dimension), group);
             index.push_str(&path);
             let (mut by_target, mut by_evaluation) = (String::new(), String::new());
             for trial in trials {
                 let trace = trace(suite, trial);
                 let last = trace.last().map_or(NOTHING, |row| row.difference);
-                let number = trial.instance as u64 * suite.seeds + trial.seed;
+                let number = SEEDS * u64::from(suite.objective(trial).number) + trial.seed;
                 let _ = write!(index, ", {number}:{}|{last:.1e}", trial.evaluations());
                 let optimum = suite.objective(trial).optimum;
                 write_rows(&mut by_target, optimum, &targets_hit(&trace));
@@ -63,10 +68,10 @@ pub(super) fn write(suite: &Suite, folder: &Path) -> Result<(), SuiteError> {
 /// The first two lines of an entry of the index.
 fn head(
     index: &mut String,
-    suite: &Suite,
     algorithm: &Algorithm,
     function: &Function,
-    (id, dimension): (usize, u16),
+    (id, dimension): (u32, u16),
+    group: &str,
 ) {
     let known = function.instances.iter().all(|instance| instance.is_known);
     let optimum = if known { "known beforehand" } else { "least cost found by any of these runs" };
@@ -75,12 +80,11 @@ fn head(
         "suite = '{SUITE}', funcId = {id}, DIM = {dimension}, Precision = {PRECISION:.3e}, \
          algId = '{}', coco_version = '2.8.2', logger = 'bbob', data_format = 'bbob-new2', \
          settings = ''\n\
-         % {}: {} {}; Fopt: {optimum}; instance i with seed s is trial (i - 1) * {} + s",
+         % {}: {} {}; group {group}; Fopt: {optimum}; instance i with seed s is trial {SEEDS} i + s",
         algorithm.name.replace('\'', "\""),
         function.name,
         algorithm.name,
         algorithm.settings,
-        suite.seeds,
     );
 }
 

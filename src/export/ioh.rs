@@ -23,7 +23,8 @@ const COLUMNS: [&str; 3] = ["evaluations", "raw_y", "seed"];
 /// Writes all files into a folder.
 pub(super) fn write(suite: &Suite, folder: &Path) -> Result<(), SuiteError> {
     for ((algorithm, function), by_dimension) in suite.cells() {
-        let (id, function) = (function + 1, &suite.functions[function]);
+        let function = &suite.functions[function];
+        let id = function.number;
         let algorithm = &suite.algorithms[algorithm];
         let home = folder.join(&algorithm.folder);
         let data = format!("data_f{id}_{}", function.file);
@@ -60,7 +61,7 @@ fn experiment_attributes(suite: &Suite, function: &Function) -> Vec<Value> {
     let text = |text: &str| Value::from(text).to_string();
     vec![
         json!({ "experiment": text(&suite.name) }),
-        json!({ "group": text(&function.group) }),
+        json!({ "group": text(&function.groups.join("; ")) }),
         json!({ "budget": suite.budget.to_string() }),
         json!({ "optimum_source": text(optimum) }),
         json!({ "written_by": text(concat!("driftless ", env!("CARGO_PKG_VERSION"))) }),
@@ -72,7 +73,7 @@ fn run(suite: &Suite, trial: &ExportedRun) -> Value {
     let best = trial.best();
     let found = trial.trace.iter().find(|(_, cost)| *cost == best);
     json!({
-        "instance": trial.instance + 1,
+        "instance": suite.objective(trial).number,
         "evals": trial.evaluations(),
         "best": { "evals": found.map(|(evaluation, _)| evaluation), "y": best, "x": [] },
         "seed": trial.seed,

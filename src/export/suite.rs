@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use polars::prelude::*;
 
 use crate::analysis::least_found;
-use crate::experiment::{Instance, Plan, Run};
+use crate::digest::digest;
+use crate::experiment::{Identity, Instance, Number, Numbers, Plan, Run};
 use crate::output::{FileError, file_name, unlike};
 
 /// The name of the suite in the files.
@@ -16,13 +17,11 @@ pub(super) const SUITE: &str = "driftless";
 pub struct Suite {
     /// The experiment's name.
     pub name: String,
-    /// The largest seed of the plan.
-    pub seeds: u64,
     /// Evaluations allowed to a run.
     pub budget: u64,
     /// The field.
     pub algorithms: Vec<Algorithm>,
-    /// One each group of instances; its number in the files is its place, counted from one.
+    /// The functions.
     pub functions: Vec<Function>,
     /// The stored runs, in the plan's order.
     pub trials: Vec<ExportedRun>,
@@ -42,22 +41,28 @@ pub struct Algorithm {
 /// Evaluation and best cost so far, in order.
 pub(super) type Trace = Vec<(u64, f64)>;
 
-/// Instances that are summarised together.
+/// Instances that differ in no more than their numbers say, and in the number of variables.
 #[derive(Debug, Clone)]
 pub struct Function {
-    /// The problem's name and what tells the group from others.
+    /// Its number in the files, the same in every experiment.
+    pub number: u32,
+    /// The problem's name and, unless that is a test function's, what tells the group from others.
     pub name: String,
     /// The same, fit for a file's name.
     pub file: String,
-    /// The instances' group.
-    pub group: String,
-    /// The instances; an instance's number in the files is its place, counted from one.
+    /// The instances' groups.
+    pub groups: Vec<String>,
+    /// The instances.
     pub instances: Vec<Objective>,
 }
 
 /// One instance.
 #[derive(Debug, Clone)]
 pub struct Objective {
+    /// Its number in the files, the same in every experiment.
+    pub number: u32,
+    /// Its group.
+    pub group: String,
     /// The number of variables, whatever the formulation.
     pub dimension: u16,
     /// The least cost known; where none is, the least among these runs, infinite where all found nothing.
@@ -92,13 +97,20 @@ pub enum SuiteError {
     /// The stored tables are not what they should be.
     #[error("cannot use the stored tables")]
     Table(#[from] PolarsError),
-    /// The formats number functions, instances and variables in 16 bits.
-    #[error("found {found} {what}, expected {} at most", u16::MAX)]
-    TooMany {
-        /// Of what.
-        what: &'static str,
-        /// How many.
-        found: usize,
+    /// The formats count variables in 16 bits.
+    #[error("found {0} variables, expected 65,535 at most")]
+    TooManyVariables(usize),
+    /// Numbers worked out from what determines a function or an instance are, once in a great while, the same.
+    #[error(
+        "`{first}` and `{second}` come to the same number, {number}; export them from two experiments"
+    )]
+    SameNumber {
+        /// The number.
+        number: u32,
+        /// One of both.
+        first: String,
+        /// The other.
+        second: String,
     },
 }
 
@@ -117,7 +129,6 @@ impl Suite {
         };
         Ok(Self {
             name: plan.name.clone(),
-            seeds: plan.runs.iter().map(|run| run.seed).max().unwrap_or(1),
             budget: plan.runs.iter().map(|run| run.budget).max().unwrap_or(1),
             algorithms: algorithms(plan),
             functions,
@@ -186,36 +197,83 @@ type Place = (usize, usize);
 fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>), SuiteError> {
     let mut functions: Vec<Function> = Vec::new();
     let mut places = Vec::new();
-    let mut of_group: HashMap<&str, usize> = HashMap::new();
+    // What each number of a function, and of an instance within it and a dimension, has been worked out from.
+    let mut by_number: HashMap<u32, (usize, Number)> = HashMap::new();
+    let mut instances: HashMap<(usize, u16, u32), Number> = HashMap::new();
     for (instance, least) in plan.instances.iter().zip(least) {
-        let place = *of_group.entry(&instance.group).or_insert_with(|| {
-            functions.push(function(instance));
-            functions.len() - 1
+        let Numbers { function, instance: own } = numbers(instance);
+        let value = number(&function);
+        let (place, known) = by_number.entry(value).or_insert_with(|| {
+            functions.push(self::function(instance, value, &function));
+            (functions.len() - 1, function.clone())
         });
-        let known = instance.subject.known_cost();
-        let instances = &mut functions[place].instances;
-        places.push((place, instances.len()));
-        instances.push(Objective {
-            dimension: number("variables", instance.subject.dimension())?,
-            optimum: known.unwrap_or(*least),
-            is_known: known.is_some(),
+        let place = *place;
+        if *known != function {
+            return Err(same(value, &functions[place].name, &instance.label));
+        }
+        let variables = instance.subject.dimension();
+        let dimension =
+            u16::try_from(variables).map_err(|_| SuiteError::TooManyVariables(variables))?;
+        let value = number(&own);
+        let twin = instances.insert((place, dimension, value), own.clone());
+        let of_function = &mut functions[place];
+        if twin.is_some_and(|twin| twin != own) {
+            return Err(same(value, &of_function.name, &instance.label));
+        }
+        if !of_function.groups.contains(&instance.group) {
+            of_function.groups.push(instance.group.clone());
+        }
+        let optimum = instance.subject.known_cost();
+        places.push((place, of_function.instances.len()));
+        of_function.instances.push(Objective {
+            number: value,
+            group: instance.group.clone(),
+            dimension,
+            optimum: optimum.unwrap_or(*least),
+            is_known: optimum.is_some(),
         });
-        number("instances of one function", instances.len())?;
     }
-    number("functions", functions.len())?;
     Ok((functions, places))
 }
 
-fn function(instance: &Instance) -> Function {
-    let (problem, group) = (instance.subject.name(), &instance.group);
-    let name =
-        if group.starts_with(problem) { group.clone() } else { format!("{problem} {group}") };
-    let name = one_line(&name);
-    Function { file: file_name(&name), name, group: group.clone(), instances: Vec::new() }
+fn same(number: u32, first: &str, second: &str) -> SuiteError {
+    SuiteError::SameNumber { number, first: first.to_owned(), second: second.to_owned() }
 }
 
-fn number(what: &'static str, found: usize) -> Result<u16, SuiteError> {
-    u16::try_from(found).map_err(|_| SuiteError::TooMany { what, found })
+fn numbers(instance: &Instance) -> Numbers {
+    let subject = &instance.subject;
+    let by_group = || Numbers {
+        function: Number::Of(
+            Identity::new().with("name", subject.name()).with("group", instance.group.as_str()),
+        ),
+        instance: Number::Of(subject.identity()),
+    };
+    subject.numbers().unwrap_or_else(by_group)
+}
+
+/// The least number that is worked out.
+const LEAST: u64 = 10_000;
+
+fn number(number: &Number) -> u32 {
+    match number {
+        Number::Known(number) => *number,
+        Number::Of(identity) => {
+            let hash = u64::from_str_radix(&digest(&identity.to_string()), 16).unwrap_or_default();
+            // Readers count in 32 bits with a sign.
+            (LEAST + hash % (i32::MAX as u64 - LEAST)) as u32
+        }
+    }
+}
+
+fn function(instance: &Instance, number: u32, by: &Number) -> Function {
+    let (problem, group) = (instance.subject.name(), &instance.group);
+    let name = match by {
+        Number::Known(_) => problem.to_owned(),
+        Number::Of(_) if group.starts_with(problem) => group.clone(),
+        Number::Of(_) => format!("{problem} {group}"),
+    };
+    let name = one_line(&name);
+    Function { number, file: file_name(&name), name, groups: Vec::new(), instances: Vec::new() }
 }
 
 /// A label without line breaks and doubled spaces.

@@ -68,6 +68,18 @@ impl TestFunction {
         Self::StyblinskiTang,
     ];
 
+    /// The number that exports have for it; one that is added gets the next.
+    pub fn number(self) -> u32 {
+        match self {
+            Self::Sphere => 1,
+            Self::Ellipsoid => 2,
+            Self::Rosenbrock => 3,
+            Self::Rastrigin => 4,
+            Self::Ackley => 5,
+            Self::StyblinskiTang => 6,
+        }
+    }
+
     /// The name used in files and tables.
     pub fn name(self) -> &'static str {
         match self {

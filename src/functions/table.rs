@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::analytic::{Analytic, TestFunction};
-use crate::experiment::{Identity, Instance, Kind, Source, Subject};
+use crate::experiment::{Identity, Instance, Kind, Number, Numbers, Source, Subject};
 use crate::input::{Document, InputError, count, count_from};
 use crate::search::{Failure, Problem};
 
@@ -129,6 +129,12 @@ impl Subject for Function {
 
     fn problem(&self, _: &str) -> Result<Arc<dyn Problem>, Failure> {
         Ok(self.problem.clone())
+    }
+
+    fn numbers(&self) -> Option<Numbers> {
+        let instance = u32::try_from(self.number).ok()?;
+        let function = Number::Known(self.problem.function().number());
+        Some(Numbers { function, instance: Number::Known(instance) })
     }
 
     fn dependence(&self, instances: &[&Instance]) -> Option<&'static str> {

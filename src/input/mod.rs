@@ -34,6 +34,11 @@ pub enum InputError {
     Content(Box<Mistake>),
 }
 
+/// Characters of the longest line that is shown whole, on either side of a mistake in a longer one, and of the longest message.
+const LONGEST_LINE: usize = 400;
+const WINDOW: usize = 40;
+const LONGEST_MESSAGE: usize = 800;
+
 /// What is wrong with a text, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
@@ -53,14 +58,35 @@ pub struct Mistake {
 impl Mistake {
     /// In one line: file, line and column, message.
     fn shown(&self) -> String {
+        let help = self.help.as_ref().map_or_else(String::new, |help| format!("; {help}"));
+        format!("{}{}{help}", self.place(), self.message)
+    }
+
+    /// File, and line and column where they are known, with colons behind them.
+    fn place(&self) -> String {
         let before = self.text.get(..self.span.start).filter(|_| !self.span.is_empty());
         let place = before.map_or_else(String::new, |before| {
             let line = before.matches('\n').count() + 1;
             let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
             format!("{line}:{column}: ")
         });
-        let help = self.help.as_ref().map_or_else(String::new, |help| format!("; {help}"));
-        format!("{}: {place}{}{help}", self.path.display(), self.message)
+        format!("{}: {place}", self.path.display())
+    }
+
+    /// Place and message with what stands there, where the lines around are too long to be shown whole.
+    pub fn in_a_window(&self) -> Option<String> {
+        let (before, behind) = self.text.split_at_checked(self.span.start)?;
+        let around = before.lines().rev().take(2).chain(behind.lines().take(3));
+        let length: usize = around.map(|line| line.chars().count()).max()?;
+        if length <= LONGEST_LINE {
+            return None;
+        }
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        let skipped = line.chars().count().saturating_sub(WINDOW);
+        let near: String = line.chars().skip(skipped).collect();
+        let there: String =
+            behind.lines().next().unwrap_or_default().chars().take(WINDOW).collect();
+        Some(format!("{}{}: `…{near}{there}…`", self.place(), self.message))
     }
 }
 
@@ -151,7 +177,7 @@ impl Document {
         let marked = self.text.get(span.clone()).unwrap_or_default();
         let first_line = marked.lines().next().map_or(0, str::len);
         InputError::Content(Box::new(Mistake {
-            message: message.to_string(),
+            message: short(&message.to_string()),
             path: self.path.clone(),
             text: self.text.clone(),
             span: span.start..span.start + first_line,
@@ -168,6 +194,17 @@ impl Document {
         let message = error.message().trim();
         self.error_at(error.span().unwrap_or(0..0), message, nearest_known_name(message))
     }
+}
+
+/// A message without what fills more than a few lines.
+fn short(message: &str) -> String {
+    if message.chars().count() <= LONGEST_MESSAGE {
+        return message.to_owned();
+    }
+    let half = LONGEST_MESSAGE / 2;
+    let first: String = message.chars().take(half).collect();
+    let last: Vec<char> = message.chars().rev().take(half).collect();
+    format!("{first} … {}", last.into_iter().rev().collect::<String>())
 }
 
 /// Leaves some keys of a table.

@@ -141,12 +141,12 @@ pub trait AnyReorientation: Debug + Send + Sync {
     /// The lanes that motions are evaluated with.
     fn width(&self) -> Width;
 
-    /// The motion with these coefficients; see [`Reorientation::assess`].
+    /// The motion with these coefficients; see [`Reorientation::certify`].
     ///
     /// # Panics
     ///
     /// Panics when there are more or fewer coefficients than the family's dimension.
-    fn assess(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment;
+    fn certify(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment;
 
     /// The motion, sampled; see [`Motion::sample`].
     fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion;
@@ -182,8 +182,8 @@ impl<F: SearchedFamily> AnyReorientation for Reorientation<F> {
         self.width()
     }
 
-    fn assess(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment {
-        self.assess(coefficients, duration)
+    fn certify(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment {
+        self.certify(coefficients, duration)
     }
 
     fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion {

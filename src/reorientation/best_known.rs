@@ -150,7 +150,7 @@ impl BestKnown {
         if coefficients.len() != problem.dimension() {
             return Err(error("found an entry with other coefficients than its family's"));
         }
-        let assessment = problem.assess(&coefficients, Some(self.t_f));
+        let assessment = problem.certify(&coefficients, Some(self.t_f));
         Ok((problem, assessment))
     }
 }

@@ -20,8 +20,9 @@ pub struct Reorientation<F: Family = SinePolynomial> {
     family: Arc<F>,
     accuracy: Accuracy,
     tables: Arc<Tables<F>>,
-    /// Those of [`Accuracy::FINE`], made when first asked for, for this problem and all its clones.
-    fine: Arc<OnceLock<Arc<Tables<F>>>>,
+    /// Those that [`certify`](Self::certify) needs for most motions, made when first asked for, for this problem and all its
+    /// clones.
+    fine: Arc<[OnceLock<Arc<Tables<F>>>; 2]>,
     width: Width,
 }
 
@@ -38,6 +39,9 @@ pub struct Assessment {
     pub excess: [f64; 3],
     /// By how much joints leave their ranges, as a share of half the range of the one that does so most.
     pub range_excess: f64,
+    /// By how much [`residual`](Self::residual) may be wrong \[rad\], where [that was estimated](Reorientation::certify);
+    /// infinite where the motion is too wild to tell.
+    pub residual_error: Option<f64>,
     /// Largest rate, acceleration and jerk of each joint \[rad/s, rad/s², rad/s³\].
     pub peaks: Peaks,
 }
@@ -66,9 +70,9 @@ impl<F: Family> Reorientation<F> {
         assert_eq!(task.limits.0.len(), task.robot.joint_count(), "limits for every joint");
         assert_eq!(family.joints(), task.robot.joint_count(), "a path for every joint");
         let tables = Tables::new(&task, &family, accuracy);
-        let fine = OnceLock::new();
+        let fine = <[OnceLock<_>; 2]>::default();
         if accuracy == Accuracy::FINE {
-            let _ = fine.set(tables.clone());
+            let _ = fine[0].set(tables.clone());
         }
         let (family, fine) = (Arc::new(family), Arc::new(fine));
         Self { task, family, accuracy, tables, fine, width: Width::widest() }
@@ -79,9 +83,18 @@ impl<F: Family> Reorientation<F> {
     #[must_use]
     pub fn with_accuracy(&self, accuracy: Accuracy) -> Self {
         let make = || Tables::new(&self.task, self.family(), accuracy);
-        let tables =
-            if accuracy == Accuracy::FINE { self.fine.get_or_init(make).clone() } else { make() };
+        let is_next = |fine: &Arc<Tables<F>>| accuracy == Accuracy::FINE.twice(fine);
+        let kept = match &*self.fine {
+            [fine, _] if accuracy == Accuracy::FINE => Some(fine),
+            [fine, next] => fine.get().is_some_and(is_next).then_some(next),
+        };
+        let tables = kept.map_or_else(make, |kept| kept.get_or_init(make).clone());
         Self { accuracy, tables, ..self.clone() }
+    }
+
+    /// Twice as many steps and intervals as this problem's.
+    pub(super) fn twice_as_fine(&self) -> Accuracy {
+        self.accuracy.twice(&self.tables)
     }
 
     /// The same problem, evaluated with so many lanes, or fewer where the machine has not so many; it
@@ -143,24 +156,36 @@ impl<F: Family> Reorientation<F> {
     ///
     /// Panics when there are more or fewer coefficients than the family's dimension.
     pub fn assess(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment {
+        self.look(coefficients, duration).1
+    }
+
+    /// The same, and the rotation from the goal to where the base ends.
+    pub(super) fn look(
+        &self,
+        coefficients: &[f64],
+        duration: Option<f64>,
+    ) -> (UnitQuaternion<f64>, Assessment) {
         self.check(coefficients);
         let mut workspace = self.workspace();
         let measure = Measure { given: self.given(), coefficients, workspace: &mut workspace };
-        let attitude_error = self.width.run(measure);
+        let off = self.width.run(measure);
+        let attitude_error = off.imag().norm();
         let peaks = self.family.peaks(&workspace.samples, coefficients);
         let range_excess = self.range_excess(&workspace);
         let (duration, excess) = match duration {
             Some(duration) => (duration, peaks.over(duration).excess(&self.task.limits)),
             None => (peaks.shortest_duration(&self.task.limits), [0.0; 3]),
         };
-        Assessment {
+        let assessment = Assessment {
             cost: self.terms().cost(attitude_error, duration, &excess, range_excess),
             attitude_error,
             duration,
             excess,
             range_excess,
+            residual_error: None,
             peaks: peaks.over(duration),
-        }
+        };
+        (off, assessment)
     }
 
     /// The cost of that motion alone: what [`assess`](Self::assess) finds, without the peaks that the
@@ -223,6 +248,11 @@ impl Assessment {
     /// The base's error angle \[rad\].
     pub fn residual(&self) -> f64 {
         2.0 * self.attitude_error.clamp(0.0, 1.0).asin()
+    }
+
+    /// Whether the base ends within this angle \[rad\] of its goal, as far as is sure.
+    pub fn is_within(&self, tolerance: f64) -> bool {
+        self.residual() + self.residual_error.unwrap_or_default() <= tolerance
     }
 
     /// The last three terms of `J`, and one more of the same weight for joints out of their ranges.

@@ -6,7 +6,6 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::accuracy::Accuracy;
 use super::boxes::Boxes;
 use super::fitness::{Assessment, Reorientation};
 use super::measure::Workspace;
@@ -178,7 +177,7 @@ impl<F: Family> Formulated<F> {
     /// The motion of a point, evaluated finely: its coefficients and what is known of it.
     pub fn certify(&self, x: &[f64]) -> (Vec<f64>, Assessment) {
         let (coefficients, duration) = self.decode(x);
-        let assessment = self.task.with_accuracy(Accuracy::FINE).assess(&coefficients, duration);
+        let assessment = self.task.certify(&coefficients, duration);
         (coefficients, assessment)
     }
 

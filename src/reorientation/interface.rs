@@ -11,10 +11,13 @@ use super::fitness::Assessment;
 use super::subject::{DURATION, KIND, RESIDUAL, SAME_MOTION, TaskSubject};
 use crate::exhibit::Exhibits;
 use crate::experiment::{
-    Identity, Instance, Judgement, Quantity, Results, Subject, Value, ValueKind,
+    Identity, Instance, Judgement, Number, Numbers, Quantity, Results, Subject, Value, ValueKind,
 };
 use crate::search::{Failure, Problem};
 use crate::task::Task;
+
+/// By how much a residual that is stored may be wrong \[rad\].
+const UNCERTAIN: f64 = 1e-6;
 
 impl Subject for TaskSubject {
     fn kind(&self) -> &'static str {
@@ -37,6 +40,17 @@ impl Subject for TaskSubject {
             },
             "box": self.box_identity(),
         }))
+    }
+
+    /// A robot under its limits is a function, a pair of start and goal an instance.
+    fn numbers(&self) -> Option<Numbers> {
+        let (mut function, mut instance) = (self.reorientation().task().identity(), json!({}));
+        for key in ["start", "goal"] {
+            instance[key] = function[key].take();
+        }
+        function["family"] = self.reorientation().spec().identity();
+        let [function, instance] = [function, instance].map(|one| Number::Of(Identity::of(one)));
+        Some(Numbers { function, instance })
     }
 
     fn spaces(&self) -> Vec<String> {
@@ -121,6 +135,11 @@ impl Subject for TaskSubject {
 
     fn judge(&self, space: &str, x: &[f64]) -> Result<Option<Judgement>, Failure> {
         let (coefficients, motion) = self.formulated(space)?.certify(x);
+        if !motion.residual_error.is_some_and(|error| error <= UNCERTAIN) {
+            return Err(Failure::new(
+                "the best motion swings too often for the base's end to be evaluated: its box is too wide",
+            ));
+        }
         Ok(Some(Judgement { cost: motion.cost, measures: measured(&motion, coefficients) }))
     }
 

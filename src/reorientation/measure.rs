@@ -98,7 +98,7 @@ impl<F: Family> LaneWork for Fitness<'_, F> {
     #[inline(always)]
     fn run<T: Lanes>(self) -> (f64, [f64; 3]) {
         let Self { given, coefficients, duration, workspace } = self;
-        let error = Measure { given, coefficients, workspace }.run::<T>();
+        let error = Measure { given, coefficients, workspace }.run::<T>().imag().norm();
         let matters = |known: [f64; 3]| match duration {
             // Within a limit it does not matter how far.
             Some(duration) => {
@@ -114,7 +114,7 @@ impl<F: Family> LaneWork for Fitness<'_, F> {
     }
 }
 
-/// Samples a path, and finds `‖δq_b‖` of eq. 20 at its end.
+/// Samples a path, and finds the rotation from the goal to where the base ends, `δq_b` of eq. 20.
 pub(super) struct Measure<'a, F: Family> {
     pub(super) given: Given<'a, F>,
     pub(super) coefficients: &'a [f64],
@@ -122,14 +122,14 @@ pub(super) struct Measure<'a, F: Family> {
 }
 
 impl<F: Family> LaneWork for Measure<'_, F> {
-    type Output = f64;
+    type Output = UnitQuaternion<f64>;
 
     #[inline(always)]
-    fn run<T: Lanes>(self) -> f64 {
+    fn run<T: Lanes>(self) -> UnitQuaternion<f64> {
         let Self { given, coefficients, workspace: Workspace { samples, joints, .. } } = self;
         given.family.sample::<T>(&given.tables.sampler, coefficients, samples);
         let net = Turn { given, coefficients, joints }.run::<T>();
-        given.error_after(net).imag().norm()
+        given.error_after(net)
     }
 }
 

@@ -6,6 +6,7 @@ mod any;
 mod bases;
 mod best_known;
 mod boxes;
+mod certify;
 mod derivatives;
 mod excursions;
 #[cfg(feature = "harness")]

@@ -9,6 +9,11 @@ use super::fitness::Reorientation;
 use crate::attitude::increments;
 use crate::trajectory::{Curve as _, Family};
 
+/// Intervals are cut into ever more steps until the base's attitudes change by no more than this angle \[rad\], or there are so
+/// many steps.
+const SAME_ATTITUDE: f64 = 1e-8;
+const MOST_STEPS: usize = 1 << 17;
+
 /// Everything that moves, at equally spaced times from start to end.
 #[derive(Debug, Clone)]
 pub struct Motion {
@@ -49,16 +54,30 @@ impl Motion {
             });
             JointMotion { name: joint.name.to_owned(), derivatives: derivatives.collect() }
         });
-        let steps = increments(&task.robot, intervals, |tau, angles, rates| {
+        let write = |tau, angles: &mut [f64], rates: &mut [f64]| {
             for ((angle, rate), curve) in angles.iter_mut().zip(rates).zip(&curves) {
                 [*angle, *rate] = curve.derivatives(tau);
             }
-        });
-        let mut base = vec![task.start.base];
-        base.extend(steps.scan(task.start.base, |attitude, step| {
-            *attitude *= step;
-            Some(*attitude)
-        }));
+        };
+        let base_in = |steps: usize| -> Vec<UnitQuaternion<f64>> {
+            let mut attitude = task.start.base;
+            let ends = increments(&task.robot, intervals * steps, write).map(|step| {
+                attitude *= step;
+                attitude
+            });
+            let ends = ends.skip(steps - 1).step_by(steps);
+            std::iter::once(task.start.base).chain(ends).collect()
+        };
+        let (mut base, mut steps) = (base_in(1), 1);
+        while intervals * steps < MOST_STEPS {
+            steps *= 2;
+            let finer = base_in(steps);
+            let is_same = base.iter().zip(&finer).all(|(a, b)| a.angle_to(b) <= SAME_ATTITUDE);
+            base = finer;
+            if is_same {
+                break;
+            }
+        }
         Self {
             joints: joints.collect(),
             time: taus.iter().map(|tau| tau * duration).collect(),

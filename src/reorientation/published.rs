@@ -216,7 +216,7 @@ impl Published {
     /// The motion under a reading; none where the paper has nothing of the motion's family.
     pub fn assess(&self, reading: Reading) -> Option<Assessment> {
         match reading {
-            Reading::Physics => Some(self.problem.assess(&self.coefficients, Some(self.duration))),
+            Reading::Physics => Some(self.problem.certify(&self.coefficients, Some(self.duration))),
             Reading::AsPublished => self.assess_as_published(),
         }
     }
@@ -236,6 +236,7 @@ impl Published {
             duration: self.duration,
             excess,
             range_excess: 0.0,
+            residual_error: None,
             peaks,
         })
     }

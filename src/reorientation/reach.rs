@@ -2,14 +2,15 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Matrix3, SymmetricEigen, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix3xX, SymmetricEigen, UnitQuaternion, Vector3};
 use serde::{Serialize, Serializer};
 
-use super::fitness::Assessment;
+use super::fitness::{Assessment, Reorientation};
 use crate::attitude::increments;
 use crate::momentum::base_twist;
 use crate::search::Rng;
 use crate::task::Task;
+use crate::trajectory::Family;
 
 /// Configurations within the joints' ranges at which the base's answer to the joints is looked at, and the seed that they
 /// are drawn with.
@@ -62,7 +63,7 @@ impl Reach {
     /// How a motion stands to the goal of its task, where motions of up to `longest` \[s\] were searched: only a goal that
     /// needs longer than those, and than the motion itself, is [`TooSlow`](Self::TooSlow).
     pub fn of(task: &Task, motion: &Assessment, longest: f64) -> Self {
-        if motion.residual() <= task.goal_tolerance {
+        if motion.is_within(task.goal_tolerance) {
             return if Self::keeps_limits(motion) { Self::Reached } else { Self::NotFound };
         }
         let turns = BaseTurns::of(task);
@@ -95,6 +96,32 @@ impl Reach {
             Self::TooSlow(seconds) => Some(seconds),
             _ => None,
         }
+    }
+}
+
+/// Steps of coefficients for differences, and shares of the way to where the error would vanish that are tried.
+const DIFFERENCE: f64 = 1e-6;
+const SHARES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
+
+impl<F: Family> Reorientation<F> {
+    /// Whether motions beside this one end nearer to the goal. At the end of a search they were passed over for their time.
+    pub fn is_held_by_time(&self, coefficients: &[f64]) -> bool {
+        let error = |c: &[f64]| self.error_after(self.net_rotation(c)).scaled_axis();
+        let here = error(coefficients);
+        let mut slopes = Matrix3xX::zeros(coefficients.len());
+        let mut there = coefficients.to_vec();
+        for (k, mut column) in slopes.column_iter_mut().enumerate() {
+            there[k] = coefficients[k] + DIFFERENCE;
+            column.copy_from(&((error(&there) - here) / DIFFERENCE));
+            there[k] = coefficients[k];
+        }
+        let Ok(inverse) = slopes.pseudo_inverse(NOTHING) else { return false };
+        let step = inverse * here;
+        SHARES.iter().any(|share| {
+            let moved: Vec<f64> =
+                coefficients.iter().zip(&step).map(|(c, step)| c - share * step).collect();
+            error(&moved).norm() < (1.0 - share / 2.0) * here.norm()
+        })
     }
 }
 

@@ -45,7 +45,12 @@ fn instances_of(
     TaskKeys { trajectory, sweep, .. }: &TaskKeys,
     document: &Document,
 ) -> Result<Vec<Instance>, InputError> {
-    let (task, own) = (&base.task, &base.document);
+    let own = &base.document;
+    let task = &base.task.clone().with_swept_limits([
+        !sweep.rate_limit_deg_s.is_empty(),
+        !sweep.acceleration_limit_deg_s2.is_empty(),
+        !sweep.jerk_limit_deg_s3.is_empty(),
+    ]);
     let poses = poses(task, sweep, own, document)?;
     let posed = |pose: &PoseTable| task.with_pose(pose).build(own);
     let posed: Vec<Task> = poses.iter().map(posed).collect::<Result<_, _>>()?;

@@ -8,11 +8,14 @@ use super::error::ReportError;
 use super::page::Page;
 use super::provenance::provenance;
 use crate::analysis::tables::NAMES as TABLES;
-use crate::analysis::{Analysis, csv, latex, markdown, render, summary, targets};
+use crate::analysis::{Analysis, csv as csv_text, latex, markdown, render, summary, targets};
 use crate::exhibit::{Chart, Finding, Table};
 use crate::experiment::{Plan, Run, Store, load};
 use crate::output::{create_folder, write_file};
 use crate::plot;
+
+/// Where tables are, beside the page.
+const TABLES_FOLDER: &str = "tables";
 
 /// What the page is called.
 const PAGE: &str = "report.html";
@@ -29,47 +32,93 @@ pub struct Report {
     pub findings: Vec<Finding>,
     /// The page; beside it are `tables/` and `figures/`.
     pub page: PathBuf,
+    /// How many runs the report that is there shows, where these are more than are stored, and it was left as it was.
+    pub kept: Option<usize>,
     /// Stored runs.
     pub stored: usize,
     /// Those of them that failed or found nothing.
     pub failed: usize,
 }
 
-/// Makes tables, figures and the page of all that is stored of a plan, in a folder. Tables and figures of earlier reports
-/// that these runs do not give are removed.
-pub fn write(plan: &Plan, store: &Store, folder: &Path) -> Result<Report, ReportError> {
+/// Where a report goes.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Target<'a> {
+    /// The folder of the results.
+    pub results: &'a Path,
+    /// The folder that page, `tables/` and `figures/` are written into.
+    pub out: &'a Path,
+    /// Whether to replace a report there of more runs.
+    pub replace: bool,
+}
+
+impl<'a> Target<'a> {
+    /// Beside the results, unless a report of more runs is there.
+    pub fn of(results: &'a Path) -> Self {
+        Self { results, out: results, replace: false }
+    }
+
+    /// Into another folder.
+    #[must_use]
+    pub fn into(self, out: &'a Path) -> Self {
+        Self { out, ..self }
+    }
+
+    /// Also in place of a report of more runs.
+    #[must_use]
+    pub fn replacing(self) -> Self {
+        Self { replace: true, ..self }
+    }
+}
+
+/// Makes tables, figures and the page of all that is stored of a plan. Tables and figures of an earlier report
+/// that these runs do not give are removed; but a report of more runs than are stored now stays as it is, unless the target
+/// says otherwise.
+pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, ReportError> {
+    let folder = target.out;
     let runs = load(plan, store)?;
+    let kept = shown(folder).filter(|shown| *shown > runs.len() && !target.replace);
     let targets = targets(plan, &runs);
     let analysis = Analysis::new(plan, &runs, &targets);
     let summary = render(&summary(plan, &runs, &targets)?)?;
     let own = analysis.exhibits();
     let findings = analysis.findings(&own);
-    let mut tables = analysis.tables(own.tables)?;
-    let mut charts = plot::charts(plan, &tables, runs.len(), own.leading_charts)?;
-    charts.extend(own.charts);
-    tables.extend(own.chart_tables);
-    write_tables(&tables, &own.table_names, &folder.join("tables"))?;
-    write_charts(&charts, &own.chart_names, &folder.join("figures"))?;
-    let page = Page {
-        name: &plan.name,
-        findings: &findings,
-        scenes: &own.scenes,
-        motions_found: own.scenes_found,
-        charts: &charts,
-        tables: &tables,
-        files: &files(folder),
-        facts: &provenance(plan, store)?,
-    };
     let path = folder.join(PAGE);
-    write_file(&path, page.html()?.as_bytes())?;
+    if kept.is_none() {
+        let mut tables = analysis.tables(own.tables)?;
+        let mut charts = plot::charts(plan, &tables, runs.len(), own.leading_charts)?;
+        charts.extend(own.charts);
+        tables.extend(own.chart_tables);
+        write_tables(&tables, &own.table_names, &folder.join(TABLES_FOLDER))?;
+        write_charts(&charts, &own.chart_names, &folder.join("figures"))?;
+        let page = Page {
+            name: &plan.name,
+            findings: &findings,
+            scenes: &own.scenes,
+            motions_found: own.scenes_found,
+            charts: &charts,
+            tables: &tables,
+            files: &files(target.results),
+            facts: &provenance(plan, store)?,
+        };
+        write_file(&path, page.html()?.as_bytes())?;
+    }
     Ok(Report {
         summary,
         lines: own.lines,
         findings,
         page: path,
+        kept,
         stored: runs.len(),
         failed: failures(&runs),
     })
+}
+
+/// How many runs the report in a folder shows, if there is one.
+fn shown(folder: &Path) -> Option<usize> {
+    let table = folder.join(TABLES_FOLDER).join("runs.csv");
+    let mut rows = csv::Reader::from_path(table).ok()?.into_byte_records();
+    rows.try_fold(0, |count, row| row.is_ok().then_some(count + 1))
 }
 
 fn failures(runs: &[Run]) -> usize {
@@ -84,7 +133,7 @@ fn write_tables(tables: &[Table], own: &[&str], folder: &Path) -> Result<(), Rep
     let gone = all.filter(|name| tables.iter().all(|table| table.name != **name));
     remove(folder, gone, &["csv", "md", "tex"]);
     for Table { name, caption, frame, is_curve } in tables {
-        write_file(&folder.join(format!("{name}.csv")), &csv(frame)?)?;
+        write_file(&folder.join(format!("{name}.csv")), &csv_text(frame)?)?;
         if !is_curve {
             let text = format!("{}\n{caption}\n", markdown(frame)?);
             write_file(&folder.join(format!("{name}.md")), text.as_bytes())?;

@@ -1,5 +1,7 @@
 //! Reading a robot file, and the robots that come with the program.
 
+use std::collections::HashSet;
+
 use nalgebra::{Cholesky, Matrix3, Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
@@ -54,7 +56,7 @@ struct BaseTable {
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct JointTable {
     #[serde(skip_serializing_if = "Option::is_none")]
-    name: Option<String>,
+    name: Option<Spanned<String>>,
     dh: DhTable,
     #[serde(deserialize_with = "interval")]
     range_deg: [f64; 2],
@@ -86,7 +88,28 @@ impl RobotFile {
             let message = "found no joint, expected at least one";
             return Err(document.error_at(file.joint.span(), message, None));
         }
+        file.check_names(document)?;
         Ok(file)
+    }
+}
+
+impl RobotFile {
+    /// Whether joints can be told apart by their names, which exports and tables have.
+    fn check_names(&self, document: &Document) -> Result<(), InputError> {
+        let mut taken = HashSet::new();
+        for (i, joint) in self.joint.get_ref().iter().enumerate() {
+            let span = joint.name.as_ref().map_or_else(|| self.joint.span(), Spanned::span);
+            let name = joint.name(i);
+            if name.trim().is_empty() || name.chars().any(char::is_control) {
+                let message = "found a name without a letter, or with a control character";
+                return Err(document.error_at(span, message, None));
+            }
+            if !taken.insert(name.clone()) {
+                let message = format!("found two joints with the name `{name}`");
+                return Err(document.error_at(span, message, None));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -165,10 +188,15 @@ impl DhTable {
 }
 
 impl JointTable {
+    fn name(&self, index: usize) -> String {
+        let given = self.name.as_ref().map(|name| name.get_ref().clone());
+        given.unwrap_or_else(|| format!("joint{}", index + 1))
+    }
+
     fn link(self, index: usize, placement: Placement) -> Link {
         let range = self.range_deg.map(f64::to_radians);
         Link {
-            name: self.name.unwrap_or_else(|| format!("joint{}", index + 1)),
+            name: self.name(index),
             parent: index.checked_sub(1),
             placement,
             joint: Joint::Revolute(Axis { direction: Vector3::z_axis(), range }),

@@ -1,5 +1,6 @@
 //! The `[task]` table.
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -8,14 +9,18 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::{PoseTable, Posture, PostureParts, Task};
-use crate::input::{
-    Document, Finite, InputError, PerJoint, Positive, finite_array, fraction, nearest,
-};
+use crate::input::{Document, Finite, Fraction, InputError, PerJoint, Positive, nearest};
 use crate::robot::Robot;
 use crate::trajectory::Limits;
 
+/// The key of the base's weight.
+const WEIGHT: &str = "weights.base";
+
 /// How far from its goal the base may end where a file says nothing of it.
 const TOLERANCE_DEG: f64 = 0.001;
+
+/// The robot of the paper's task, whose values a file need not state.
+const PAPERS_ROBOT: &str = "xiao2023";
 
 /// The `[task]` table.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -26,17 +31,21 @@ pub struct TaskTable {
     goal: PostureTable,
     limits: LimitsTable,
     weights: WeightsTable,
+    /// Limits on rate, acceleration and jerk that a sweep states.
+    #[serde(skip)]
+    swept: [bool; 3],
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
-#[expect(clippy::struct_field_names, reason = "keys of files have their units")]
 struct PostureTable {
     joints_deg: Spanned<Vec<Finite>>,
-    #[serde(deserialize_with = "finite_array")]
-    base_zyx_deg: [f64; 3],
+    base_zyx_deg: Spanned<[Finite; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     tolerance_deg: Option<Spanned<Positive>>,
+    /// Whether a pose states the joints' angles, and the base's attitude.
+    #[serde(skip)]
+    posed: [bool; 2],
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -50,8 +59,7 @@ struct LimitsTable {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct WeightsTable {
-    #[serde(deserialize_with = "fraction")]
-    base: f64,
+    base: Spanned<Fraction>,
 }
 
 impl TaskTable {
@@ -90,9 +98,49 @@ impl TaskTable {
         Self { robot, ..self }
     }
 
+    /// The same task where a sweep states these limits on rate, acceleration and jerk.
+    #[must_use]
+    pub fn with_swept_limits(self, swept: [bool; 3]) -> Self {
+        Self { swept, ..self }
+    }
+
+    /// The keys that the file leaves to the paper's task.
+    pub fn inherited(&self) -> Vec<&'static str> {
+        let is_stated = |span: Range<usize>, elsewhere: bool| !span.is_empty() || elsewhere;
+        let Self { start, goal, limits, weights, swept, .. } = self;
+        let keys = [
+            ("start.joints_deg", is_stated(start.joints_deg.span(), start.posed[0])),
+            ("start.base_zyx_deg", is_stated(start.base_zyx_deg.span(), start.posed[1])),
+            ("goal.joints_deg", is_stated(goal.joints_deg.span(), goal.posed[0])),
+            ("goal.base_zyx_deg", is_stated(goal.base_zyx_deg.span(), goal.posed[1])),
+            ("limits.rate_deg_s", is_stated(limits.rate_deg_s.span(), swept[0])),
+            ("limits.acceleration_deg_s2", is_stated(limits.acceleration_deg_s2.span(), swept[1])),
+            ("limits.jerk_deg_s3", is_stated(limits.jerk_deg_s3.span(), swept[2])),
+            (WEIGHT, is_stated(weights.base.span(), false)),
+        ];
+        keys.into_iter().filter(|(_, is_stated)| !is_stated).map(|(key, _)| key).collect()
+    }
+
+    /// Whether nothing is left to the paper's task that is for another robot. A weight is for all.
+    fn check_stated(&self, document: &Document) -> Result<(), InputError> {
+        let mut missing = self.inherited();
+        missing.retain(|key| *key != WEIGHT);
+        if missing.is_empty() || self.robot.get_ref() == PAPERS_ROBOT {
+            return Ok(());
+        }
+        let keys: Vec<String> = missing.iter().map(|key| format!("`{key}`")).collect();
+        let message = format!(
+            "the task does not state {}, which this robot has no defaults for",
+            keys.join(", ")
+        );
+        let help = "the defaults are those of the paper's task and robot".to_owned();
+        Err(document.error_at(self.robot.span(), message, Some(help)))
+    }
+
     /// The task. A robot that does not come with the program is a file, sought beside `document`.
     pub fn build(&self, document: &Document) -> Result<Task, InputError> {
         let robot = self.robot(document)?;
+        self.check_stated(document)?;
         let reader = Reader { document, robot: &robot };
         let [rate, acceleration, jerk] = [
             reader.limit(&self.limits.rate_deg_s)?,
@@ -109,7 +157,7 @@ impl TaskTable {
             start: reader.posture(&self.start)?,
             goal: reader.posture(&self.goal)?,
             limits: Limits(limits.collect()),
-            base_weight: self.weights.base,
+            base_weight: self.weights.base.get_ref().0,
             goal_tolerance: tolerance.to_radians(),
             robot: Arc::new(robot),
         })
@@ -119,12 +167,12 @@ impl TaskTable {
 impl PostureTable {
     /// The same posture but for some parts.
     fn with(&self, parts: &PostureParts) -> Self {
-        let Self { joints_deg, base_zyx_deg, tolerance_deg } = self;
+        let Self { joints_deg, base_zyx_deg, tolerance_deg, posed } = self;
+        let base = parts.base_zyx_deg.map(|base| Spanned::new(0..0, base));
         Self {
             joints_deg: parts.joints_deg.as_ref().unwrap_or(joints_deg).clone(),
-            base_zyx_deg: parts
-                .base_zyx_deg
-                .map_or(*base_zyx_deg, |base| base.map(|angle| angle.0)),
+            posed: [posed[0] || parts.joints_deg.is_some(), posed[1] || base.is_some()],
+            base_zyx_deg: base.unwrap_or_else(|| base_zyx_deg.clone()),
             tolerance_deg: tolerance_deg.clone(),
         }
     }
@@ -166,7 +214,7 @@ impl Reader<'_> {
                 return Err(self.document.error_at(table.joints_deg.span(), message, None));
             }
         }
-        let [yaw, pitch, roll] = table.base_zyx_deg.map(f64::to_radians);
+        let [yaw, pitch, roll] = table.base_zyx_deg.get_ref().map(|angle| angle.0.to_radians());
         Ok(Posture {
             joints: angles.iter().map(|a| a.0.to_radians()).collect(),
             base: UnitQuaternion::from_euler_angles(roll, pitch, yaw),
@@ -191,9 +239,6 @@ impl Reader<'_> {
             "found {found} values, expected {expected}, one for each joint of robot `{}`",
             self.robot.name()
         );
-        let help = list.span().is_empty().then(|| {
-            "the file leaves this to the paper's task, which is for another robot".to_owned()
-        });
-        Err(self.document.error_at(list.span(), message, help))
+        Err(self.document.error_at(list.span(), message, None))
     }
 }

@@ -92,17 +92,58 @@ fn robots() {
     }
 }
 
-/// A robot that the paper's task does not fit.
+/// A mistake far out on a long line is shown with what stands around it.
 #[test]
-fn robot_without_a_task_of_its_own() {
+fn long_lines_are_shown_in_part() {
+    let many =
+        |last: &str| format!("[task.start]\njoints_deg = [{}{last}]\n", "10, ".repeat(20_000));
+    for (text, place) in [(many("x"), "2:80015"), (many("nan"), "2:80015")] {
+        let folder = Folder::new().with("task.toml", text);
+        let output = folder.run(&["plan", "task.toml"]);
+        let told = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains(place) && told.contains("10, 10,") && told.len() < 1000, "{told}");
+    }
+    let text = format!("[task]\n{} = 3\n", "x".repeat(35_000));
+    let output = Folder::new().with("task.toml", text).run(&["plan", "task.toml"]);
+    let told = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("2:1") && told.contains("robot") && told.len() < 2000, "{told}");
+}
+
+/// Motions and tables name joints.
+#[test]
+fn joints_with_one_name_are_refused() {
+    let named = |first: &str, second: &str| {
+        let robot = robot("[[joint]]", "[[joint]]");
+        let parts: Vec<&str> = robot.split("[[joint]]").collect();
+        format!(
+            "{}[[joint]]\nname = '{first}'{}[[joint]]\nname = '{second}'{}",
+            parts[0], parts[1], parts[2]
+        )
+    };
+    for (name, text) in [("twice", named("elbow", "elbow")), ("blank", named("a", " "))] {
+        rejects(&format!("joints_{name}"), &["check", "robot.toml"], "robot.toml", text);
+    }
+}
+
+/// The paper's limits and attitudes are for its robot alone, also where another one has as many joints.
+#[test]
+fn another_robot_inherits_no_task() {
     let three = robot("[[joint]]", "[[joint]]");
     let three: Vec<&str> = three.split("[[joint]]").take(4).collect();
-    let folder = Folder::new()
-        .with("arm.toml", three.join("[[joint]]"))
-        .with("task.toml", "[task]\nrobot = 'arm.toml'\n");
-    let output = folder.run(&["plan", "task.toml"]);
-    assert_eq!(output.status.code(), Some(2));
-    insta::assert_snapshot!("robot_without_a_task_of_its_own", stderr(&output));
+    let part = "[task]\nrobot = 'arm.toml'\n[task.start]\njoints_deg = [0, 0, 0]\nbase_zyx_deg = [0, 0, 0]\n\
+        [task.limits]\njerk_deg_s3 = 9\n";
+    for (name, robot, task) in [
+        ("nothing", three.join("[[joint]]"), "[task]\nrobot = 'arm.toml'\n"),
+        ("part", three.join("[[joint]]"), part),
+        ("six_joints", robot("mass = 600", "mass = 400"), "[task]\nrobot = 'arm.toml'\n"),
+    ] {
+        let folder = Folder::new().with("arm.toml", robot).with("task.toml", task);
+        let output = folder.run(&["plan", "task.toml"]);
+        assert_eq!(output.status.code(), Some(2));
+        insta::assert_snapshot!(format!("robot_states_{name}"), stderr(&output));
+    }
 }
 
 /// A robot's mistake is shown in the robot's file, also when a task names it.

@@ -12,6 +12,12 @@ const SMALL: &str = "name = 'small'\nseeds = 3\nbudget = { evaluations = 700 }\n
     [sweep]\njerk_limit_deg_s3 = [40, 80]\n[[optimiser]]\npso = { population = 20 }\n\
     [[optimiser]]\nrandom = { formulation = 'scaled' }\n";
 
+/// A task of the paper's, but for another robot.
+const OWN_ARM: &str = "[task]\nrobot = 'arm.toml'\n\
+    start = { joints_deg = [10, 30, 45, -20, -25, 40], base_zyx_deg = [6, 15, 7] }\n\
+    goal = { joints_deg = [40, 60, 90, -10, -30, 60], base_zyx_deg = [0, 0, 0] }\n\
+    limits = { rate_deg_s = 60, acceleration_deg_s2 = 70 }\n";
+
 pub(crate) fn run(folder: &Folder, args: &[&str]) -> String {
     let output = folder.run(&[&["run"], args].concat());
     assert!(output.status.success(), "{}", stderr(&output));
@@ -112,7 +118,7 @@ fn edited_experiments_keep_what_still_fits() {
 #[test]
 fn results_say_how_to_get_them_again() {
     let robot = include_str!("../../src/robot/xiao2023.toml").replace("mass = 600", "mass = 700");
-    let text = SMALL.replace("[sweep]", "[task]\nrobot = 'arm.toml'\n[sweep]");
+    let text = SMALL.replace("[sweep]", &format!("{OWN_ARM}[sweep]"));
     let folder = Folder::new().with("small.toml", text).with("arm.toml", robot);
     run(&folder, &["small.toml", "--out", "out"]);
     let recipe = single_rows(&folder.path().join("out/runs"))[0].column("recipe").unwrap().clone();
@@ -243,7 +249,7 @@ fn runs_that_find_nothing_are_recorded() {
         if line.starts_with("mass = ") { "mass = 1e308".to_owned() } else { line.to_owned() }
     };
     let robot: Vec<String> = robot.lines().map(heavy).collect();
-    let text = SMALL.replace("[sweep]", "[task]\nrobot = 'arm.toml'\n[sweep]");
+    let text = SMALL.replace("[sweep]", &format!("{OWN_ARM}[sweep]"));
     let folder = Folder::new().with("small.toml", text).with("arm.toml", robot.join("\n"));
     let output = folder.run(&["run", "small.toml", "--out", "out"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

@@ -115,7 +115,8 @@ fn robots_are_instances() {
         let parts: Vec<&str> = robot.split("[[joint]]").take(joints + 1).collect();
         parts.join("[[joint]]")
     };
-    let text = "name = 'robots'\nseeds = 1\nbudget = { evaluations = 20 }\n[sweep]\n\
+    let text = "name = 'robots'\nseeds = 1\nbudget = { evaluations = 20 }\n\
+        task.limits = { rate_deg_s = 60, acceleration_deg_s2 = 70, jerk_deg_s3 = 80 }\n[sweep]\n\
         robot = ['xiao2023', 'arms/five.toml', 'arms/three.toml']\nrandom_poses = { count = 2 }\n\
         [[optimiser]]\nrandom = {}\n";
     let folder = Folder::new().with("robots.toml", text);
@@ -140,8 +141,10 @@ fn robots_are_instances() {
 fn tasks_are_instances() {
     let robot = include_str!("../../src/robot/xiao2023.toml");
     let three: Vec<&str> = robot.split("[[joint]]").take(4).collect();
-    let task = "[task]\nrobot = 'three.toml'\n[task.start]\njoints_deg = [0, 0, 0]\n\
-        [task.goal]\njoints_deg = [10, 20, 30]\n";
+    let task = "[task]\nrobot = 'three.toml'\n\
+        start = { joints_deg = [0, 0, 0], base_zyx_deg = [6, 15, 7] }\n\
+        goal = { joints_deg = [10, 20, 30], base_zyx_deg = [0, 0, 0] }\n\
+        limits = { rate_deg_s = 60, acceleration_deg_s2 = 70, jerk_deg_s3 = 80 }\n";
     let text = "name = 'tasks'\nseeds = 1\nbudget = { evaluations = 20 }\n\
         [sweep]\ntask = ['hold.toml', 'own/small.toml']\n[[optimiser]]\nrandom = {}\n";
     let folder = Folder::new().with("tasks.toml", text).with("hold.toml", "[task]\n");

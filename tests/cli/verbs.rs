@@ -150,7 +150,10 @@ fn plan_is_free_form_unless_told_otherwise() {
 fn plan_says_whether_the_goal_is_reached() {
     let robot = include_str!("../../src/robot/xiao2023.toml");
     let one: Vec<&str> = robot.split("[[joint]]").take(2).collect();
-    let task = "[task]\nrobot = 'one.toml'\n[task.start]\njoints_deg = [10]\n[task.goal]\njoints_deg = [40]\n";
+    let task = "[task]\nrobot = 'one.toml'\n\
+        start = { joints_deg = [10], base_zyx_deg = [6, 15, 7] }\n\
+        limits = { rate_deg_s = 60, acceleration_deg_s2 = 70, jerk_deg_s3 = 80 }\n\
+        [task.goal]\njoints_deg = [40]\nbase_zyx_deg = [0, 0, 0]\n";
     let folder = Folder::new()
         .with("one.toml", one.join("[[joint]]"))
         .with("task.toml", task)
@@ -220,7 +223,8 @@ fn plan_takes_another_robot() {
         joint(0)
     );
     let task = "[task]\nrobot = 'arm.toml'\n[task.start]\njoints_deg = [0, 0, 0]\nbase_zyx_deg = [3, 0, -4]\n\
-                [task.goal]\njoints_deg = [0, 0, 0]\n[task.limits]\nrate_deg_s = [30, 20, 40]\n\
+                [task.goal]\njoints_deg = [0, 0, 0]\nbase_zyx_deg = [0, 0, 0]\n\
+                [task.limits]\nrate_deg_s = [30, 20, 40]\nacceleration_deg_s2 = 70\njerk_deg_s3 = 80\n\
                 [trajectory]\nterms = 4\n";
     let folder = Folder::new().with("arm.toml", arm).with("task.toml", task);
     let plan = json(&folder, &["plan", "task.toml", "--json", "--budget", "6000"]);
@@ -247,12 +251,16 @@ fn motions_are_written() {
         "time,joint,angle,rate,acceleration,jerk,base_w,base_x,base_y,base_z\n0.0,joint1,"
     ));
     let yaml = std::fs::read_to_string(folder.path().join("motion.yaml")).unwrap();
-    let message: serde_yaml_ng::Value = serde_yaml_ng::from_str(&yaml).unwrap();
-    assert_eq!(message["joint_names"][5], "joint6");
-    let last = &message["points"][500];
-    assert_eq!(last["time_from_start"]["sec"], 6);
-    assert_eq!(last["time_from_start"]["nanosec"], 330_400_000);
-    assert!((last["positions"][0].as_f64().unwrap().to_degrees() - 40.0).abs() < 1e-9);
+    let list = |line: &str, key: &str| -> Vec<serde_json::Value> {
+        serde_json::from_str(line.trim_start().strip_prefix(key).unwrap()).unwrap()
+    };
+    let names = list(yaml.lines().nth(3).unwrap(), "joint_names: ");
+    assert_eq!(names[5], "joint6");
+    let points: Vec<&str> = yaml.split("\n- ").skip(1).collect();
+    assert_eq!(points.len(), 501);
+    assert!(points[500].contains("time_from_start: {sec: 6, nanosec: 330400000}"));
+    let positions = list(points[500].lines().next().unwrap(), "positions: ");
+    assert!((positions[0].as_f64().unwrap().to_degrees() - 40.0).abs() < 1e-9);
 }
 
 /// A motion that cannot be written is an error, not a loss: exit status 1.

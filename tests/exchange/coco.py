@@ -20,6 +20,9 @@ class DriftlessTestbed(cocopp.testbedsettings.GECCOBBOBTestbed):
 cocopp.testbedsettings.DriftlessTestbed = DriftlessTestbed
 cocopp.testbedsettings.suite_to_testbed["driftless"] = "DriftlessTestbed"
 
+# Trial numbers of an instance.
+SEEDS = 2_000_000
+
 # From 1e4 down to the precision, on the grid that the reader rounds down to.
 TARGETS = [float(np.power(10, i / 5)) for i in range(20, -41, -1)]
 
@@ -43,9 +46,8 @@ def compare(folder, table, optima, tally):
 
 
 def identity(data, left):
-    """Group and optimiser; the comment begins with `% PROBLEM GROUP: OPTIMISER`."""
-    function = data.comment.removeprefix("% ").split(": ")[0]
-    group = function.removeprefix("reorientation").strip()
+    """Group and optimiser; the comment has `; group GROUP; Fopt: …`."""
+    group = data.comment.split("; group ")[1].split("; Fopt: ")[0]
     if (group, data.algId) not in left:
         raise SystemExit(f"unknown data set {data.algId} {data.comment}")
     return group, data.algId
@@ -53,10 +55,15 @@ def identity(data, left):
 
 def compare_data_set(data, trials, optimum, tally, where):
     instances = sorted({trial.instance for trial in trials}, key=instance_number)
-    seeds = max(trial.seed for trial in trials)
-    number = lambda trial: instances.index(trial.instance) * seeds + trial.seed
-    trials = sorted(trials, key=number)
-    tally["coco: trials"].compare(data.instancenumbers, [number(trial) for trial in trials], where)
+    place = lambda trial: (instances.index(trial.instance), trial.seed)
+    trials = sorted(trials, key=place)
+    numbers = [divmod(int(number), SEEDS) for number in data.instancenumbers]
+    tally["coco: trials"].compare([seed for _, seed in numbers], [trial.seed for trial in trials], where)
+    known = {trial.instance: number for trial, (number, _) in zip(trials, numbers)}
+    again = [known[trial.instance] for trial in trials]
+    tally["coco: trials"].compare([number for number, _ in numbers], again, where)
+    if len(set(known.values())) < len(instances):
+        raise SystemExit(f"{where}: two instances have one number")
     spent = [trial.evaluations for trial in trials]
     tally["coco: evaluations spent"].compare(data.readmaxevals, spent, where)
     shifted = [shift(trial, optimum) for trial in trials]

@@ -17,7 +17,10 @@ def compare(folder, table, tally):
     falling = manager.load(monotonic=True, include_meta_data=True)
     tally["ioh: runs"].compare(len(runs), sum(map(len, table.values())), "runs")
     for (group, optimiser), trials in table.items():
-        here = (pl.col("group") == group) & (pl.col("algorithm_name") == optimiser)
+        here = pl.col("group").str.split("; ").list.contains(group)
+        here &= pl.col("algorithm_name") == optimiser
+        if "dimension=" in group:
+            here &= pl.col("dimension") == int(group.rpartition("dimension=")[2])
         where = f"{group} {optimiser}"
         order = compare_rows(runs.filter(here), rows.filter(here), trials, tally, where)
         data = falling.filter(here)
@@ -28,7 +31,12 @@ def compare(folder, table, tally):
 def compare_rows(runs, rows, trials, tally, where):
     """Overview and rows of every run; gives the trials in the order of `data_id`."""
     instances = sorted({trial.instance for trial in trials}, key=instance_number)
-    expected = {(instances.index(trial.instance) + 1, trial.seed): trial for trial in trials}
+    # Runs stand in the order of instances, whatever their numbers.
+    numbers = list(dict.fromkeys(runs.sort("data_id")["instance"]))
+    if len(numbers) != len(instances):
+        raise SystemExit(f"{where}: {len(numbers)} instances instead of {len(instances)}")
+    of = dict(zip(instances, numbers))
+    expected = {(of[trial.instance], trial.seed): trial for trial in trials}
     order = {}
     for run in runs.iter_rows(named=True):
         mine = rows.filter(pl.col("data_id") == run["data_id"])

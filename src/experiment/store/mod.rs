@@ -12,6 +12,7 @@
 //! stand in two batches; readers take the first.
 
 mod compact;
+mod listed;
 mod read;
 mod stack;
 

@@ -45,7 +45,7 @@ fn way(motion: &BestMotion<'_>) -> String {
 
 /// Every joint's largest rate, acceleration and jerk as multiples of its limits.
 fn ratios(motion: &BestMotion<'_>) -> Vec<[f64; 3]> {
-    let assessment = motion.problem.assess(&motion.coefficients, Some(motion.duration));
+    let assessment = motion.problem.certify(&motion.coefficients, Some(motion.duration));
     let joints = assessment.peaks.0.iter().zip(&motion.problem.task().limits.0);
     joints.map(|(peaks, limits)| std::array::from_fn(|k| peaks[k].value / limits[k])).collect()
 }

@@ -1,69 +1,114 @@
 //! ROS `trajectory_msgs/JointTrajectory`.
 
-use serde::Serialize;
+use std::fmt::Write as _;
 
 use super::ExportError;
 use crate::reorientation::motion::Motion;
 
-#[derive(Serialize)]
-struct JointTrajectory<'a> {
-    header: Header,
-    joint_names: Vec<&'a str>,
-    points: Vec<Point>,
-}
-
-#[derive(Serialize)]
-struct Header {
-    stamp: Time,
-    frame_id: String,
-}
-
-#[derive(Serialize)]
-struct Time {
-    sec: u32,
-    nanosec: u32,
-}
-
-#[derive(Serialize)]
-struct Point {
-    positions: Vec<f64>,
-    velocities: Vec<f64>,
-    accelerations: Vec<f64>,
-    effort: Vec<f64>,
-    time_from_start: Time,
-}
-
 /// The motion as YAML; the message has no place for jerks and for the base.
+///
+/// Texts are quoted and numbers have a point, so that readers of YAML 1.1, which take `on` for a truth value and `1e-7` for a
+/// text, read them as they are.
 pub(super) fn motion(motion: &Motion) -> Result<Vec<u8>, ExportError> {
+    let error = |reason: &str| ExportError::Format { format: "YAML", reason: reason.to_owned() };
     // The message counts seconds in 32 bits with a sign.
     if motion.time.iter().any(|&time| !(0.0..=f64::from(i32::MAX)).contains(&time)) {
-        let reason = "the motion is too long for the message's clock".to_owned();
-        return Err(ExportError::Format { format: "YAML", reason });
+        return Err(error("the motion is too long for the message's clock"));
     }
-    let points = motion.time.iter().enumerate().map(|(i, &time)| {
-        let all = |order: usize| motion.joints.iter().map(|j| j.derivatives[i][order]).collect();
-        Point {
-            positions: all(0),
-            velocities: all(1),
-            accelerations: all(2),
-            effort: Vec::new(),
-            time_from_start: duration(time),
-        }
-    });
-    let message = JointTrajectory {
-        header: Header { stamp: duration(0.0), frame_id: String::new() },
-        joint_names: motion.joints.iter().map(|joint| joint.name.as_str()).collect(),
-        points: points.collect(),
-    };
-    let text = serde_yaml_ng::to_string(&message)
-        .map_err(|e| ExportError::Format { format: "YAML", reason: e.to_string() })?;
+    let stamps: Vec<u64> = motion.time.iter().map(|time| (time * 1e9).round() as u64).collect();
+    if stamps.windows(2).any(|pair| pair[0] >= pair[1]) {
+        return Err(error(
+            "the motion is too short for the message's clock, which counts nanoseconds",
+        ));
+    }
+    let names = motion.joints.iter().map(|joint| quoted(&joint.name));
+    let mut text = format!(
+        "header:\n  stamp: {}\n  frame_id: \"\"\njoint_names: {}\npoints:\n",
+        clock(0),
+        list(names)
+    );
+    for (i, stamp) in stamps.into_iter().enumerate() {
+        let all =
+            |order: usize| list(motion.joints.iter().map(|j| number(j.derivatives[i][order])));
+        let _ = writeln!(
+            text,
+            "- positions: {}\n  velocities: {}\n  accelerations: {}\n  effort: []\n  time_from_start: {}",
+            all(0),
+            all(1),
+            all(2),
+            clock(stamp)
+        );
+    }
     Ok(text.into_bytes())
 }
 
-fn duration(seconds: f64) -> Time {
-    let nanoseconds = (seconds * 1e9).round() as u64;
-    Time {
-        sec: u32::try_from(nanoseconds / 1_000_000_000).unwrap_or(u32::MAX),
-        nanosec: (nanoseconds % 1_000_000_000) as u32,
+fn list(items: impl Iterator<Item = String>) -> String {
+    format!("[{}]", items.collect::<Vec<_>>().join(", "))
+}
+
+/// As JSON writes it, which YAML reads.
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+/// With all digits and a point.
+fn number(value: f64) -> String {
+    let digits = format!("{value:?}");
+    match digits.split_once('e') {
+        Some((mantissa, exponent)) if !mantissa.contains('.') => format!("{mantissa}.0e{exponent}"),
+        _ => digits,
+    }
+}
+
+fn clock(nanoseconds: u64) -> String {
+    let (sec, nanosec) = (nanoseconds / 1_000_000_000, nanoseconds % 1_000_000_000);
+    format!("{{sec: {sec}, nanosec: {nanosec}}}")
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::UnitQuaternion;
+
+    use super::*;
+    use crate::reorientation::motion::JointMotion;
+
+    fn joint(name: &str, positions: [f64; 2]) -> JointMotion {
+        let derivatives = positions.map(|position| [position, 1e-7, -2.5e20, 0.0]).to_vec();
+        JointMotion { name: name.to_owned(), derivatives }
+    }
+
+    fn two(end: f64) -> Motion {
+        let joints = vec![joint("on", [0.0, 1.0]), joint("a: \"b\"", [-0.25, 3e-9])];
+        Motion { time: vec![0.0, end], joints, base: vec![UnitQuaternion::identity(); 2] }
+    }
+
+    /// What YAML 1.1 (yaml.org/type) takes for truth values and texts.
+    #[test]
+    fn names_are_quoted_and_numbers_have_a_point() {
+        let text = String::from_utf8(motion(&two(1.5)).unwrap()).unwrap();
+        let expected = r#"header:
+  stamp: {sec: 0, nanosec: 0}
+  frame_id: ""
+joint_names: ["on", "a: \"b\""]
+points:
+- positions: [0.0, -0.25]
+  velocities: [1.0e-7, 1.0e-7]
+  accelerations: [-2.5e20, -2.5e20]
+  effort: []
+  time_from_start: {sec: 0, nanosec: 0}
+- positions: [1.0, 3.0e-9]
+  velocities: [1.0e-7, 1.0e-7]
+  accelerations: [-2.5e20, -2.5e20]
+  effort: []
+  time_from_start: {sec: 1, nanosec: 500000000}
+"#;
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn equal_time_stamps_are_refused() {
+        assert!(motion(&two(1e-9)).is_ok());
+        let error = motion(&two(1e-10)).unwrap_err().to_string();
+        assert!(error.contains("counts nanoseconds"), "{error}");
     }
 }

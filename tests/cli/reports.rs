@@ -1,0 +1,106 @@
+//! Reports: looking at results destroys none, and labels do not go stale.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::path::Path;
+
+use polars::prelude::*;
+
+use crate::experiments::run;
+use crate::folder::{Folder, stderr, stdout};
+
+const SMALL: &str = "name = 'small'\nseeds = 3\nbudget = { evaluations = 600 }\n\
+    functions = { name = ['sphere'], dimension = [3] }\n[[optimiser]]\npso = { population = 20 }\n\
+    [[optimiser]]\nrandom = {}\n";
+
+/// The files of a report with their bytes.
+fn report(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    for part in ["tables", "figures"] {
+        for entry in fs::read_dir(folder.join(part)).unwrap().map(Result::unwrap) {
+            let name = format!("{part}/{}", entry.file_name().display());
+            files.insert(name, fs::read(entry.path()).unwrap());
+        }
+    }
+    files.insert("report.html".to_owned(), fs::read(folder.join("report.html")).unwrap());
+    files
+}
+
+/// An experiment that was changed and hardly begun takes nothing from the report of the complete one, nor from its file.
+#[test]
+fn a_report_of_more_runs_stays() {
+    let longer = SMALL.replace("600", "700").replace("seeds = 3", "seeds = 4");
+    let folder = Folder::new().with("small.toml", SMALL).with("longer.toml", longer);
+    run(&folder, &["small.toml", "--out", "out"]);
+    let out = folder.path().join("out");
+    let (complete, file) = (report(&out), fs::read(out.join("experiment.toml")).unwrap());
+    assert!(complete.len() > 20);
+
+    let begun = folder.run(&["run", "longer.toml", "--out", "out", "--shard", "0/4"]);
+    assert!(begun.status.success(), "{}", stderr(&begun));
+    assert!(stderr(&begun).contains("runs of another version of this experiment"));
+    let looked = folder.run(&["report", "out"]);
+    let told = stderr(&looked);
+    assert_eq!(looked.status.code(), Some(1), "{told}");
+    assert!(stdout(&looked).contains("2 of 8 runs are stored so far"));
+    assert!(told.contains("report.html shows 6 runs") && told.contains("--replace"), "{told}");
+    assert!(told.contains("6 other runs are stored"), "{told}");
+    assert_eq!(report(&out), complete);
+
+    let elsewhere = folder.run(&["report", "out", "--out", "elsewhere"]);
+    assert!(elsewhere.status.success(), "{}", stderr(&elsewhere));
+    assert!(folder.path().join("elsewhere/report.html").is_file());
+    assert_eq!(report(&out), complete);
+
+    let earlier = fs::read_dir(out.join("earlier")).unwrap().next().unwrap().unwrap().path();
+    let earlier = earlier.join("experiment.toml");
+    assert_eq!(fs::read(&earlier).unwrap(), file);
+    assert!(folder.run(&["report", "out", "--replace"]).status.success());
+    assert_ne!(report(&out), complete);
+    let again = folder.run(&["run", &earlier.display().to_string(), "--out", "out"]);
+    assert!(stderr(&again).contains("6 of 6 runs are stored already"), "{}", stderr(&again));
+    assert_eq!(report(&out), complete);
+}
+
+/// More seeds are no other version: nothing is left out.
+#[test]
+fn an_experiment_that_grows_replaces_its_report() {
+    let folder = Folder::new().with("small.toml", SMALL);
+    run(&folder, &["small.toml", "--out", "out"]);
+    let more = folder.run(&["run", "small.toml", "--out", "out", "--seeds", "4"]);
+    assert!(more.status.success() && !stderr(&more).contains("another"), "{}", stderr(&more));
+    let out = folder.path().join("out");
+    assert!(!out.join("earlier").exists());
+    let rows = fs::read_to_string(out.join("tables/runs.csv")).unwrap().lines().count();
+    assert_eq!(rows, 1 + 8);
+}
+
+/// A label that now stands for other settings: the list of the plan tells runs apart, as results/README.md joins them.
+#[test]
+fn listed_labels_are_those_of_today() {
+    let more =
+        SMALL.replace("[[optimiser]]\nrandom", "[[optimiser]]\npso = {}\n[[optimiser]]\nrandom");
+    let folder = Folder::new().with("small.toml", SMALL).with("more.toml", more);
+    run(&folder, &["small.toml", "--out", "out"]);
+    run(&folder, &["more.toml", "--out", "out"]);
+    let out = folder.path().join("out");
+    let read = |path: &Path| ParquetReader::new(File::open(path).unwrap()).finish().unwrap();
+    let plan = read(&out.join("plan.parquet"));
+    let text = |frame: &DataFrame, column: &str| -> Vec<String> {
+        frame.column(column).unwrap().str().unwrap().iter().map(|t| t.unwrap().to_owned()).collect()
+    };
+    let labels: BTreeMap<String, String> =
+        text(&plan, "key").into_iter().zip(text(&plan, "optimiser")).collect();
+    assert_eq!(labels.len(), 9);
+    let mut settings: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for entry in fs::read_dir(out.join("runs")).unwrap() {
+        let runs = read(&entry.unwrap().path());
+        for (key, own) in text(&runs, "key").iter().zip(text(&runs, "settings")) {
+            settings.entry(&labels[key]).or_default().push(own);
+        }
+    }
+    assert_eq!(settings.len(), 3, "{settings:?}");
+    for (label, own) in settings {
+        assert!(own.len() == 3 && own.iter().all(|one| *one == own[0]), "{label}: {own:?}");
+    }
+}
