@@ -41,47 +41,6 @@ fn drawn(frame: &DataFrame, text: fn(&AnyValue<'_>) -> String) -> PolarsResult<T
     Ok(table)
 }
 
-/// A table as a LaTeX `tabular` with the rules of the package booktabs, and the cells of [`render`].
-pub fn latex(frame: &DataFrame) -> PolarsResult<String> {
-    let shown = shown(frame);
-    let alignment = shown.iter().map(|c| if c.dtype().is_string() { 'l' } else { 'r' });
-    let row = |cells: Vec<String>| {
-        let cells: Vec<String> = cells.iter().map(|cell| in_latex(cell)).collect();
-        format!("{} \\\\\n", cells.join(" & "))
-    };
-    let header = row(shown.iter().map(|column| column.name().to_string()).collect());
-    let mut text = format!("\\begin{{tabular}}{{{}}}\n\\toprule\n", alignment.collect::<String>());
-    text += &header;
-    text += "\\midrule\n";
-    for i in 0..frame.height() {
-        text += &row(cells(&shown, i, cell)?);
-    }
-    text += "\\bottomrule\n\\end{tabular}\n";
-    Ok(text)
-}
-
-/// A text with what LaTeX reads otherwise.
-fn in_latex(text: &str) -> String {
-    let mut latex = String::new();
-    for character in text.chars() {
-        match character {
-            '&' | '%' | '#' | '_' | '{' | '}' | '$' => latex.extend(['\\', character]),
-            '\\' => latex += "\\textbackslash{}",
-            '~' => latex += "\\textasciitilde{}",
-            '^' => latex += "\\textasciicircum{}",
-            '≤' => latex += "$\\leq$",
-            '∞' => latex += "$\\infty$",
-            '°' => latex += "$^\\circ$",
-            '²' => latex += "$^2$",
-            'χ' => latex += "$\\chi$",
-            'τ' => latex += "$\\tau$",
-            '–' => latex += "--",
-            other => latex.push(other),
-        }
-    }
-    latex
-}
-
 /// A table as comma-separated values; numbers with all their digits, `inf` where they are infinite, and empty
 /// where there are none.
 pub fn csv(frame: &DataFrame) -> PolarsResult<Vec<u8>> {
@@ -95,12 +54,12 @@ pub fn csv(frame: &DataFrame) -> PolarsResult<Vec<u8>> {
     writer.into_inner().map_err(|error| broken(error.into_error().into()))
 }
 
-fn shown(frame: &DataFrame) -> Vec<&Column> {
+pub(super) fn shown(frame: &DataFrame) -> Vec<&Column> {
     frame.columns().iter().filter(|column| !is_blank(column)).collect()
 }
 
 /// One row's cells.
-fn cells(
+pub(super) fn cells(
     columns: &[&Column],
     row: usize,
     text: fn(&AnyValue<'_>) -> String,
@@ -122,11 +81,11 @@ fn is_blank(column: &Column) -> bool {
     column.str().is_ok_and(|text| text.iter().all(|cell| cell.is_none_or(str::is_empty)))
 }
 
-fn cell(value: &AnyValue<'_>) -> String {
+pub(super) fn cell(value: &AnyValue<'_>) -> String {
     match value {
         AnyValue::Float64(number) => significant(*number, 5),
-        AnyValue::String(text) => text.replace(['\n', '\r'], " "),
-        AnyValue::StringOwned(text) => text.replace(['\n', '\r'], " "),
+        AnyValue::String(text) => text.replace(char::is_control, " "),
+        AnyValue::StringOwned(text) => text.replace(char::is_control, " "),
         AnyValue::Null => "–".to_owned(),
         other => other.to_string(),
     }

@@ -5,6 +5,7 @@ mod format;
 mod grouped;
 #[cfg(test)]
 pub(crate) mod handmade;
+mod latex;
 mod pairs;
 pub mod statistics;
 mod summary;
@@ -14,7 +15,8 @@ mod ties;
 mod verdict;
 
 pub use blocks::ALPHA;
-pub use format::{csv, latex, markdown, render};
+pub use format::{csv, markdown, render};
 pub use grouped::Analysis;
+pub use latex::latex;
 pub use summary::summary;
 pub use targets::{Targets, least_found, targets};

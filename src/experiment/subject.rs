@@ -14,6 +14,9 @@ use super::value::{Judgement, Quantity, Value};
 use crate::exhibit::Exhibits;
 use crate::search::{Failure, Problem};
 
+/// Where searches end, as a share of how far they come down.
+const PRECISION: f64 = 1e-8;
+
 /// What the runs of an instance minimise: a problem with all that the harness has to know of it.
 ///
 /// Only [`kind`](Self::kind), [`name`](Self::name), [`identity`](Self::identity) and
@@ -98,12 +101,15 @@ pub trait Subject: Send + Sync {
         format!("{cost:.3e}")
     }
 
-    /// By how much a final cost may exceed a lower one and still be taken for the same: where searches end.
+    /// By how much a final cost may exceed a lower one and still be taken for the same: where searches end. `descent` is how
+    /// far searches come down to it, from the cost that they typically begin with; infinite where that is not known.
     ///
-    /// By default COCO's final precision, doi 10.1080/10556788.2020.1808977.
-    fn resolution(&self, lowest: f64) -> f64 {
-        let _ = lowest;
-        1e-8
+    /// By default 10⁻⁸ of the descent, since where a search ends follows from how costs vary, not from their level; but of no
+    /// descent larger than one and than the cost itself, as the first costs may be penalties. With costs of order one
+    /// that is COCO's final precision, doi 10.1080/10556788.2020.1808977. And never less than the rounding of the cost.
+    fn resolution(&self, lowest: f64, descent: f64) -> f64 {
+        let rounding = 4.0 * f64::EPSILON * lowest.abs();
+        (PRECISION * descent.min(lowest.abs().max(1.0))).max(rounding)
     }
 
     /// Why results on these instances of this kind are not independent of each other, if they are not.

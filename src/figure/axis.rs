@@ -1,6 +1,6 @@
 //! An axis: its range, its scale, and ticks that have room.
 
-use super::sheet::{fitted, raised, text_width};
+use super::sheet::{fitted_apart, raised, text_width};
 use super::style::TEXT_PT;
 
 /// An axis; a logarithmic one holds decimal logarithms.
@@ -24,15 +24,22 @@ enum Scale {
 
 /// Most powers of ten that are labelled on a logarithmic axis.
 const MOST_DECADES: f64 = 8.0;
-/// Longest name \[mm\]; a longer one ends with an ellipsis.
-const LONGEST_NAME: f64 = 55.0;
+/// Longest name \[mm\]; a longer one is cut.
+pub(crate) const LONGEST_NAME: f64 = 65.0;
+/// Values that a linear axis writes out where the largest is one of them; others have a power of ten.
+const WRITTEN_OUT: std::ops::Range<f64> = 1e-4..1e7;
+/// Values beyond are drawn at the ends of an axis.
+const LARGEST: f64 = 1e300;
 /// Most intervals of a linear axis.
 const MOST_INTERVALS: f64 = 9.0;
 
 impl Axis {
     /// A linear axis over a range and a little more on both sides, as a share of its width.
     pub(crate) fn linear(label: &str, [low, high]: [f64; 2], more: f64) -> Self {
-        let [low, high] = if high > low { [low, high] } else { [low - 0.5, low + 0.5] };
+        let [low, high] = [low, high].map(|end| end.clamp(-LARGEST, LARGEST));
+        let aside =
+            if (0.1..1e3).contains(&low.abs()) || low == 0.0 { 0.5 } else { 0.1 * low.abs() };
+        let [low, high] = if high > low { [low, high] } else { [low - aside, low + aside] };
         let more = more * (high - low);
         Self { label: label.to_owned(), range: [low - more, high + more], scale: Scale::Linear }
     }
@@ -40,6 +47,7 @@ impl Axis {
     /// A logarithmic axis over a range of positive values and a little more on both sides, as a
     /// share of its width.
     pub(crate) fn logarithmic(label: &str, [low, high]: [f64; 2], more: f64) -> Self {
+        let [low, high] = [low, high].map(|end| end.clamp(LARGEST.recip(), LARGEST));
         let [low, high] = if high > low { [low, high] } else { [low / 2.0, low * 2.0] };
         let (low, high) = (low.log10(), high.log10());
         let more = more * (high - low);
@@ -49,7 +57,7 @@ impl Axis {
 
     /// Names, the first at the left or at the bottom.
     pub(crate) fn names(label: &str, names: &[String]) -> Self {
-        let names: Vec<String> = names.iter().map(|name| fitted(name, LONGEST_NAME)).collect();
+        let names = fitted_apart(names, LONGEST_NAME);
         let range = [-0.5, names.len() as f64 - 0.5];
         Self { label: label.to_owned(), range, scale: Scale::Names(names) }
     }
@@ -100,7 +108,7 @@ impl Axis {
         self.ticks(|[a, b]| (b.0 - a.0).abs() * length >= 3.4)
     }
 
-    /// The densest ticks that are all apart; names are never left out.
+    /// The densest ticks that are all apart; names are left out evenly.
     fn ticks(&self, apart: impl Fn([&(f64, String); 2]) -> bool) -> Vec<(f64, String)> {
         let placed = |ticks: Vec<(f64, String)>| -> Vec<(f64, String)> {
             ticks.into_iter().map(|(at, text)| (self.share(at), text)).collect()
@@ -110,7 +118,8 @@ impl Axis {
         let choices: Vec<Vec<(f64, String)>> = match &self.scale {
             Scale::Names(names) => {
                 let name = |(i, name): (usize, &String)| (i as f64, name.clone());
-                return placed(names.iter().enumerate().map(name).collect());
+                let every = |k: usize| names.iter().enumerate().step_by(k).map(name).collect();
+                (1..=names.len()).map(every).collect()
             }
             Scale::Linear => linear_ticks(low, high, i32::MIN),
             Scale::Whole => linear_ticks(low, high, 0),
@@ -134,6 +143,8 @@ impl Axis {
 /// Steps of 1, 2 or 5 times a power of ten, `least` or above, the smallest first.
 fn linear_ticks(low: f64, high: f64, least: i32) -> Vec<Vec<(f64, String)>> {
     let rough = (high - low) / MOST_INTERVALS;
+    let largest = low.abs().max(high.abs());
+    let exponent = if WRITTEN_OUT.contains(&largest) { 0 } else { largest.log10().floor() as i32 };
     let power = (rough.log10().floor() as i32).max(least);
     let steps = (power..power + 3).flat_map(|p| [1.0, 2.0, 5.0].map(|m| (m, p)));
     let steps = steps.filter(|(m, p)| m * 10_f64.powi(*p) >= rough);
@@ -141,8 +152,13 @@ fn linear_ticks(low: f64, high: f64, least: i32) -> Vec<Vec<(f64, String)>> {
         let step = m * 10_f64.powi(p);
         let first = (low / step - 1e-9).ceil() as i64;
         let last = (high / step + 1e-9).floor() as i64;
-        let decimals = (-p).max(0) as usize;
-        (first..=last).map(|i| (i as f64 * step, number(i as f64 * step, decimals))).collect()
+        let decimals = (exponent - p).max(0) as usize;
+        let text = |i: i64| {
+            let mantissa = number(i as f64 * m * 10_f64.powi(p - exponent), decimals);
+            let is_plain = exponent == 0 || i == 0;
+            if is_plain { mantissa } else { format!("{mantissa}·{}", power_of_ten(exponent)) }
+        };
+        (first..=last).map(|i| (i as f64 * step, text(i))).collect()
     });
     ticks.collect()
 }
@@ -183,6 +199,7 @@ fn width(text: &str) -> f64 {
 
 /// A number with a true minus sign.
 fn number(value: f64, decimals: usize) -> String {
+    // No minus before a zero.
     let value = if value.abs() < 1e-12 { 0.0 } else { value };
     format!("{value:.decimals$}").replace('-', "−")
 }
@@ -195,8 +212,12 @@ fn power(mantissa: f64, exponent: i32, written_out: bool) -> String {
             (-exponent).max(0) as usize + usize::from(mantissa.fract() != 0.0 && exponent < 1);
         return number(value, decimals);
     }
-    let exponent = raised(&exponent.to_string().replace('-', "−"));
-    if mantissa == 1.0 { format!("10{exponent}") } else { format!("{mantissa}·10{exponent}") }
+    let power = power_of_ten(exponent);
+    if mantissa == 1.0 { power } else { format!("{mantissa}·{power}") }
+}
+
+fn power_of_ten(exponent: i32) -> String {
+    format!("10{}", raised(&exponent.to_string().replace('-', "−")))
 }
 
 #[cfg(test)]
@@ -226,10 +247,32 @@ mod tests {
         }
     }
 
+    /// Beyond what a double can subtract, and beside what it can tell apart.
+    #[test]
+    fn axes_hold_any_numbers() {
+        for ends in
+            [[-1.7e308, 1.7e308], [1e20, 1e20], [0.0, 0.0], [1e-300, 1e-300], [1.0, 1.0 + 1e-15]]
+        {
+            let axis = Axis::linear("", ends, 0.04);
+            assert!((0.0..=1.0).contains(&axis.place(ends[0])), "{ends:?}");
+            assert!(axis.ticks_up(44.0).len() < 20, "{ends:?}");
+        }
+    }
+
     #[test]
     fn ticks_are_round() {
         let axis = Axis::linear("", [0.0, 7.8], 0.0);
         assert_eq!(told(axis.ticks_across(70.0)), ["0", "1", "2", "3", "4", "5", "6", "7"]);
+        let axis = Axis::linear("", [0.0, 2.1e-12], 0.0);
+        let power = format!("·10{}", raised("−12"));
+        let told_up = told(axis.ticks_up(20.0));
+        assert_eq!(
+            told_up,
+            ["0.0", "0.5", "1.0", "1.5", "2.0"].map(|m| match m {
+                "0.0" => m.to_owned(),
+                _ => format!("{m}{power}"),
+            })
+        );
         let axis = Axis::logarithmic("", [1.0, 2e5], 0.0);
         assert_eq!(
             told(axis.ticks_across(70.0)),

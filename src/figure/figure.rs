@@ -8,7 +8,7 @@ use svg2pdf::{ConversionOptions, PageOptions};
 
 use super::error::FigureError;
 use super::panel::{Frame, LINE, Panel};
-use super::sheet::{Anchor, Sheet, fitted, text_width};
+use super::sheet::{Anchor, Sheet, fitted_apart, text_width};
 use super::style::{Stroke, TEXT_PT, Width};
 use crate::output::{create_folder, write_file};
 
@@ -22,6 +22,9 @@ pub(crate) struct Figure {
     pub(crate) height: f64,
     pub(crate) panels: Vec<Panel>,
 }
+
+/// An entry of the legend: its place \[mm\], what it says and, unless it is a note, the stroke that it explains.
+type Entry = (f64, String, Option<Stroke>);
 
 /// Resolution of PNG files \[dots per inch\].
 const PNG_DPI: f32 = 300.0;
@@ -67,29 +70,37 @@ impl Figure {
         let legend = self.legend();
         let top = LINE * legend.len() as f64 + if legend.is_empty() { 0.0 } else { 0.8 };
         let (frames, height) = self.frames(top);
+        let titles: Vec<String> = self.panels.iter().map(|panel| panel.title.clone()).collect();
+        let titles =
+            fitted_apart(&titles, frames.first().map_or(0.0, |frame| frame.right - frame.left));
         Sheet::drawn(self.width.mm(), height, |sheet| {
             draw_legend(sheet, &legend)?;
-            let mut panels = self.panels.iter().zip(&frames);
-            panels.try_for_each(|(panel, frame)| panel.draw(sheet, frame))
+            let mut panels = self.panels.iter().zip(&frames).zip(&titles);
+            panels.try_for_each(|((panel, frame), title)| panel.draw(sheet, frame, title))
         })
     }
 
     /// Where the panels are, below `top`, and the height of all \[mm\].
     fn frames(&self, top: f64) -> (Vec<Frame>, f64) {
         let (panels, across) = (&self.panels, self.across.max(1));
-        let one =
-            |label: fn(&Panel) -> &str| panels.windows(2).all(|w| label(&w[0]) == label(&w[1]));
-        let (one_x, one_y) = (one(|p| &p.x.label), one(|p| &p.y.label));
-        // Without a panel below, or with one whose axis is another, it shows its own label.
-        let x_label = |i: usize| !one_x || i + across >= panels.len();
-        let y_label = |i: usize| !one_y || i.is_multiple_of(across);
+        // Without a panel below or to the left, or with one whose axis is another, it shows its own label.
+        let x_label = |i: usize| {
+            panels.get(i + across).is_none_or(|below| below.x.label != panels[i].x.label)
+        };
+        let y_label =
+            |i: usize| i.is_multiple_of(across) || panels[i - 1].y.label != panels[i].y.label;
         let mut lefts = vec![0.0; across];
         for (i, panel) in panels.iter().enumerate() {
             lefts[i % across] = f64::max(lefts[i % across], panel.left(self.height, y_label(i)));
         }
-        let beside = panels.iter().map(Panel::beside).fold(0.0, f64::max);
-        let free = self.width.mm() - lefts.iter().sum::<f64>() - beside * across as f64;
-        let width = (free / across as f64).max(1.0);
+        let free = self.width.mm() - lefts.iter().sum::<f64>();
+        let mut width = (free / across as f64).max(1.0);
+        let mut beside = 0.0;
+        // Ticks depend on the width, and a little of the width on the last tick.
+        for _ in 0..2 {
+            beside = panels.iter().map(|panel| panel.beside(width)).fold(beside, f64::max);
+            width = (free / across as f64 - beside).max(1.0);
+        }
         let mut frames = Vec::new();
         let mut y = top;
         for (r, row) in panels.chunks(across).enumerate() {
@@ -112,21 +123,25 @@ impl Figure {
 
     /// What the marks of all panels are called, each name once, in rows that fit the width, each with its
     /// place \[mm\].
-    fn legend(&self) -> Vec<Vec<(f64, String, Stroke)>> {
+    fn legend(&self) -> Vec<Vec<Entry>> {
         let width = self.width.mm();
-        let mut rows: Vec<Vec<(f64, String, Stroke)>> = Vec::new();
+        let mut rows: Vec<Vec<Entry>> = Vec::new();
         let mut x = f64::INFINITY;
-        let mut named = HashSet::new();
+        let mut seen = HashSet::new();
         let marks = self.panels.iter().flat_map(|panel| &panel.marks);
-        for (name, stroke) in marks.filter_map(|m| m.legend()).filter(|(n, _)| named.insert(*n)) {
-            let name = fitted(name, width - SAMPLE - BEHIND_SAMPLE - 2.0);
-            let needed = SAMPLE + BEHIND_SAMPLE + text_width(&name, TEXT_PT);
+        let named: Vec<_> =
+            marks.filter_map(|m| m.legend()).filter(|(name, _)| seen.insert(*name)).collect();
+        let names: Vec<String> = named.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let names = fitted_apart(&names, width - SAMPLE - BEHIND_SAMPLE - 2.0);
+        for (name, (_, stroke)) in names.into_iter().zip(named) {
+            let sample = if stroke.is_some() { SAMPLE + BEHIND_SAMPLE } else { 0.0 };
+            let needed = sample + text_width(&name, TEXT_PT);
             if x + needed > width {
                 rows.push(Vec::new());
                 x = 1.0;
             }
             if let Some(row) = rows.last_mut() {
-                row.push((x, name, *stroke));
+                row.push((x, name, stroke.copied()));
             }
             x += needed + BEHIND_NAME;
         }
@@ -134,10 +149,14 @@ impl Figure {
     }
 }
 
-fn draw_legend(sheet: &Sheet<'_>, rows: &[Vec<(f64, String, Stroke)>]) -> Result<(), FigureError> {
+fn draw_legend(sheet: &Sheet<'_>, rows: &[Vec<Entry>]) -> Result<(), FigureError> {
     for (i, row) in rows.iter().enumerate() {
         let y = LINE * (i as f64 + 0.6);
         for (x, name, stroke) in row {
+            let Some(stroke) = stroke else {
+                sheet.text(name, [*x, y], Anchor::Left)?;
+                continue;
+            };
             if stroke.width > 0.0 {
                 sheet.line(&[[*x, y], [x + SAMPLE, y]], stroke)?;
             }

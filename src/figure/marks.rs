@@ -4,7 +4,7 @@ use plotters::style::RGBColor;
 
 use super::error::FigureError;
 use super::sheet::{Anchor, Place, Sheet};
-use super::style::{GRID, INK_ON_COLOUR, PAPER, Stroke, mix};
+use super::style::{GRID, INK_ON_COLOUR, Marker, PAPER, Stroke, mix};
 
 /// One mark; abscissae and ordinates are values of the panel's axes.
 #[derive(Debug, Clone)]
@@ -39,6 +39,8 @@ pub(crate) enum Mark {
         colour: RGBColor,
         corners: Vec<[f64; 2]>,
     },
+    /// A line of the legend that explains no single stroke.
+    Note(String),
     /// A text beside a point or centred on it, raised by so much \[mm\].
     Label {
         at: [f64; 2],
@@ -105,6 +107,9 @@ impl Line {
     ) -> Result<(), FigureError> {
         let places: Vec<Place> = self.points.iter().copied().map(place).collect();
         sheet.line(&places, &self.stroke)?;
+        if let (None, [at]) = (self.stroke.marker, &places[..]) {
+            return sheet.marker(*at, &self.stroke.with_marker(Marker::Circle));
+        }
         let marked = match self.marked {
             _ if self.stroke.marker.is_none() => Vec::new(),
             Marked::Points => places,
@@ -114,7 +119,7 @@ impl Line {
     }
 }
 
-/// Places on a line, at even distances across.
+/// Places on a line, at even distances across; of a line too short for that its end.
 fn evenly(places: &[Place], first: f64) -> Vec<Place> {
     let Some([start, _]) = places.first() else { return Vec::new() };
     let mut marked = Vec::new();
@@ -127,15 +132,21 @@ fn evenly(places: &[Place], first: f64) -> Vec<Place> {
             next += MARKER_DISTANCE;
         }
     }
+    if marked.is_empty() {
+        marked.extend(places.last());
+    }
     marked
 }
 
 impl Mark {
     /// What the legend says of it, if anything.
-    pub(crate) fn legend(&self) -> Option<(&str, &Stroke)> {
-        let (Self::Line(Line { name, stroke, .. }) | Self::Points { name, stroke, .. }) = self
-        else {
-            return None;
+    pub(crate) fn legend(&self) -> Option<(&str, Option<&Stroke>)> {
+        let (name, stroke) = match self {
+            Self::Line(Line { name, stroke, .. }) | Self::Points { name, stroke, .. } => {
+                (name, Some(stroke))
+            }
+            Self::Note(text) => (text, None),
+            _ => return None,
         };
         (!name.is_empty()).then_some((name, stroke))
     }
@@ -148,10 +159,14 @@ impl Mark {
     ) -> Result<(), FigureError> {
         match self {
             Self::Line(line) => line.draw(sheet, place),
+            Self::Note(_) => Ok(()),
             Self::Band { colour, points } => {
                 let lower = points.iter().map(|[x, low, _]| place([*x, *low]));
                 let upper = points.iter().map(|[x, _, high]| place([*x, *high]));
                 let outline: Vec<Place> = lower.chain(upper.rev()).collect();
+                if let [low, high] = outline[..] {
+                    return sheet.line(&[low, high], &Stroke::plain(*colour, 0.2));
+                }
                 sheet.area(&outline, *colour, BAND)
             }
             Self::Points { stroke, points, .. } => {
@@ -216,4 +231,17 @@ fn luminance(RGBColor(r, g, b): RGBColor) -> f64 {
 /// A grid line.
 pub(crate) fn grid() -> Stroke {
     Stroke::plain(GRID, 0.12)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::evenly;
+
+    #[test]
+    fn short_lines_have_a_marker() {
+        assert_eq!(evenly(&[[3.0, 1.0]], 5.0), [[3.0, 1.0]]);
+        assert_eq!(evenly(&[[3.0, 1.0], [7.0, 2.0]], 5.0), [[7.0, 2.0]]);
+        assert_eq!(evenly(&[[0.0, 0.0], [10.0, 20.0]], 5.0), [[5.0, 10.0]]);
+        assert!(evenly(&[], 5.0).is_empty());
+    }
 }

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::error::FigureError;
 use super::marks::{Line, Mark, grid};
-use super::sheet::{Anchor, Place, Sheet, fitted, text_width};
+use super::sheet::{Anchor, Place, Sheet, text_width};
 use super::style::{INK, Stroke, TEXT_PT};
 
 /// Height of a line of text \[mm\].
@@ -14,6 +14,8 @@ const GAP: f64 = 0.7;
 /// Room above and to the right of the axes \[mm\].
 const MARGIN_TOP: f64 = 1.6;
 const MARGIN_RIGHT: f64 = 3.0;
+/// Room between a text and the edge \[mm\].
+const EDGE: f64 = 0.3;
 /// Free share of an axis before and behind its lines.
 pub(crate) const MARGIN: f64 = 0.04;
 
@@ -64,9 +66,14 @@ impl Panel {
         title + if self.has_axes { MARGIN_TOP } else { 0.5 }
     }
 
-    /// Room to the right of the axes, where the last text of a horizontal axis needs some \[mm\].
-    pub(crate) fn beside(&self) -> f64 {
-        if self.has_axes { MARGIN_RIGHT } else { 0.5 }
+    /// Room to the right of axes of this width, where the last text of the horizontal one needs some \[mm\].
+    pub(crate) fn beside(&self, width: f64) -> f64 {
+        if !self.has_axes {
+            return 0.5;
+        }
+        let over =
+            |(at, text): &(f64, String)| 0.5 * text_width(text, TEXT_PT) - (1.0 - at) * width;
+        self.x.ticks_across(width).iter().map(over).fold(MARGIN_RIGHT - EDGE, f64::max) + EDGE
     }
 
     /// Room below the axes \[mm\].
@@ -94,8 +101,13 @@ impl Panel {
         if self.y.has_grid() || with_label { self.y.ticks_up(height) } else { Vec::new() }
     }
 
-    /// Draws the panel.
-    pub(crate) fn draw(&self, sheet: &Sheet<'_>, frame: &Frame) -> Result<(), FigureError> {
+    /// Draws the panel, with a title that fits.
+    pub(crate) fn draw(
+        &self,
+        sheet: &Sheet<'_>,
+        frame: &Frame,
+        title: &str,
+    ) -> Result<(), FigureError> {
         let Frame { left, top, right, bottom, .. } = *frame;
         let place = |[x, y]: [f64; 2]| -> Place {
             [left + (right - left) * self.x.place(x), bottom - (bottom - top) * self.y.place(y)]
@@ -110,8 +122,7 @@ impl Panel {
         if self.has_axes {
             self.draw_axes(sheet, frame, &ticks)?;
         }
-        let title = fitted(&self.title, right - left);
-        sheet.text(&title, [left, top - self.above() + 0.5 * LINE], Anchor::Left)
+        sheet.text(title, [left, top - self.above() + 0.5 * LINE], Anchor::Left)
     }
 
     fn draw_grid(
@@ -161,7 +172,7 @@ impl Panel {
         if x_label {
             let below = bottom + TICK + GAP + 1.45 * LINE;
             // Longer than the axis, it begins further left.
-            let rest = right + self.beside() - 0.5 * text_width(&self.x.label, TEXT_PT);
+            let rest = right + self.beside(right - left) - 0.5 * text_width(&self.x.label, TEXT_PT);
             let middle = (0.5 * (left + right)).min(rest);
             sheet.text(&self.x.label, [middle, below], Anchor::Centre)?;
         }
@@ -174,12 +185,12 @@ impl Panel {
     }
 }
 
-/// The smallest and the largest ordinate of all lines.
+/// The smallest and the largest finite ordinate of all lines.
 pub(crate) fn extent<'a>(lines: impl IntoIterator<Item = &'a Line>) -> [f64; 2] {
     let values = lines.into_iter().flat_map(|line| line.points.iter().map(|[_, y]| *y));
-    let [low, high] =
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], y| [l.min(y), h.max(y)]);
-    if high - low > 1e-9 { [low, high] } else { [low - 1.0, high + 1.0] }
+    let [low, high] = range(values, f64::NEG_INFINITY);
+    // Costs of any scale are drawn, rounding is not.
+    if high - low > 1e-9 * low.abs().max(high.abs()) { [low, high] } else { [low; 2] }
 }
 
 /// The smallest and the largest finite value, none below `lowest`.
@@ -188,4 +199,38 @@ pub(crate) fn range(values: impl Iterator<Item = f64>, lowest: f64) -> [f64; 2] 
     let [low, high] =
         finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
     if low <= high { [low, high] } else { [lowest.max(0.1), lowest.max(0.1) * 10.0] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Figure;
+    use crate::figure::stored_pictures::texts;
+
+    /// The last tick's text stands half behind the axis: 8000000 is about 10 mm wide.
+    #[test]
+    fn the_last_tick_has_room() {
+        let panel = |high: f64| {
+            Panel::new(
+                Axis::linear("", [0.0, high], 0.0),
+                Axis::linear("", [0.0, 1.0], 0.0),
+                Vec::new(),
+            )
+        };
+        assert!((panel(8.0).beside(70.0) - MARGIN_RIGHT).abs() < 1e-12);
+        assert!(panel(8e6).beside(70.0) > 0.5 * text_width("8000000", TEXT_PT));
+        let tree = Figure::column(vec![panel(8e6)], 44.0).tree().unwrap();
+        let right = texts(tree.root()).iter().map(|(_, seen)| seen.right()).fold(0.0, f32::max);
+        assert!(right <= tree.size().width(), "{right}");
+    }
+
+    /// No XML can have these, escaped or not.
+    #[test]
+    fn any_text_can_be_drawn() {
+        let axis = |label: &str| Axis::linear(label, [0.0, 1.0], 0.0);
+        let text = "a\u{0}\u{1b}[1m\u{FFFF}<&>\"'";
+        let note = Mark::Note(text.to_owned());
+        let panel = Panel::new(axis(text), axis(text), vec![note]).titled(text);
+        assert!(Figure::column(vec![panel], 44.0).tree().is_ok());
+    }
 }

@@ -52,7 +52,7 @@ fn look_as_stored(charts: &[(&str, Figure)]) {
 }
 
 /// All texts, with the bounding boxes of what is seen of them.
-fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
+pub(crate) fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
     let of = |node: &usvg::Node| match node {
         usvg::Node::Group(group) => texts(group),
         usvg::Node::Text(text) => {

@@ -62,6 +62,18 @@ pub(crate) type Dashes = &'static [f64];
 /// Solid, dashed, dotted, dash-dotted.
 pub(crate) const DASHES: [Dashes; 4] = [&[], &[2.0, 0.8], &[0.6, 0.6], &[2.4, 0.7, 0.6, 0.7]];
 
+/// Of lines that are no optimisers, as many as colours, so that a grey copy tells seven apart: solid, dashed, dash-dotted, long
+/// dashes, short ones, dash-dot-dotted, and long beside short. Dots refer to something.
+const LINES: [Dashes; 7] = [
+    &[],
+    &[2.0, 0.8],
+    &[2.4, 0.7, 0.6, 0.7],
+    &[5.0, 0.9],
+    &[1.0, 1.0],
+    &[2.4, 0.6, 0.6, 0.6, 0.6, 0.6],
+    &[4.0, 0.8, 1.4, 0.8],
+];
+
 /// The shape of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Marker {
@@ -146,8 +158,9 @@ impl Stroke {
 
     /// The stroke of the `index`-th line of a chart whose lines are no optimisers.
     pub(crate) fn of(index: usize) -> Self {
-        let colour = COLOURS[index % 7];
-        Self { dashes: DASHES[index % DASHES.len()], ..Self::plain(colour, 0.32) }
+        let colour = COLOURS[index % LINES.len()];
+        let dashes = LINES[(index + index / LINES.len()) % LINES.len()];
+        Self { dashes, ..Self::plain(colour, 0.32) }
     }
 
     /// The same with points.
@@ -165,4 +178,22 @@ impl Stroke {
 pub(crate) fn mix(from: RGBColor, to: RGBColor, share: f64) -> RGBColor {
     let part = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a))).round() as u8;
     RGBColor(part(from.0, to.0), part(from.1, to.1), part(from.2, to.2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Stroke;
+
+    /// Without colours as with them.
+    #[test]
+    fn lines_of_seven_joints_are_told_apart_in_grey() {
+        let strokes: Vec<Stroke> = (0..49).map(Stroke::of).collect();
+        for i in 0..49 {
+            for j in 0..i {
+                let (a, b) = (strokes[i], strokes[j]);
+                assert!(a.dashes != b.dashes || a.colour != b.colour, "{i} and {j}");
+                assert!(i >= 7 || a.dashes != b.dashes, "{i} and {j}");
+            }
+        }
+    }
 }

@@ -3,7 +3,9 @@
 use polars::prelude::DataFrame;
 
 use super::looks::Looks;
-use super::{comparison, convergence, critical_difference, dimensions, running_times};
+use super::{
+    convergence, critical_difference, dimensions, effect_sizes, final_costs, running_times,
+};
 use crate::analysis::ALPHA;
 use crate::exhibit::{Chart, Table};
 use crate::experiment::Plan;
@@ -21,6 +23,11 @@ pub(crate) const NAMES: [&str; 9] = [
     "effect-sizes",
     "critical-difference",
 ];
+
+/// How charts draw costs.
+const SCALES: &str = "Where costs are negative, what they are above the least cost known is shown, or, without one, an axis that \
+                      is not logarithmic. A logarithmic axis shows sixteen decades at most; zero and what is below stand on a \
+                      line of short dashes.";
 
 /// What charts are made of.
 struct Maker<'a> {
@@ -42,9 +49,10 @@ pub(crate) fn charts(
     leading: Vec<Chart>,
 ) -> Result<Vec<Chart>, FigureError> {
     let looks = Looks::of_plan(plan);
-    let notes = notes(plan, stored);
-    let noted = |chart: Chart| Chart { caption: format!("{}{notes}", chart.caption), ..chart };
+    let own = notes(plan, stored);
+    let noted = |chart: Chart| Chart { caption: format!("{}{own}", chart.caption), ..chart };
     let charts = leading.into_iter().map(noted).collect();
+    let notes = own.clone() + looks.note();
     let mut maker = Maker { plan, tables, looks, notes, charts };
     maker.costs()?;
     maker.ranks()?;
@@ -82,7 +90,7 @@ impl Maker<'_> {
             let figure = convergence::convergence(frame, &self.looks, symbol)?;
             let caption = format!(
                 "Best {symbol} so far against evaluations: the median over the runs, with the quartiles as a band. A run that \
-                 ended early keeps the best it had. Costs below 10⁻⁹ stand at the lower end."
+                 ended early keeps the best it had. {SCALES}"
             );
             self.add("convergence", "Convergence", &caption, "convergence", figure);
         }
@@ -95,11 +103,10 @@ impl Maker<'_> {
             self.add("dimensions", "Number of variables", &caption, "dimensions", figure);
         }
         if let Some(frame) = self.frame("runs") {
-            let figure = comparison::final_costs(frame, &self.looks, symbol)?;
+            let figure = final_costs::final_costs(frame, &self.looks, symbol)?;
             let caption = format!(
                 "Final {symbol} of all runs, certified: quartiles as a box, the least and the largest as whiskers, single \
-                 runs as points where they are few. Runs that failed are counted at the end, \
-                 costs below 10⁻¹⁰ stand at the beginning."
+                 runs as points below where they are few. Runs that failed are counted at the end. {SCALES}"
             );
             self.add("final-costs", "Final costs", &caption, "runs", figure);
         }
@@ -142,26 +149,27 @@ impl Maker<'_> {
     }
 
     fn ranks(&mut self) -> Result<(), FigureError> {
-        let tables = [self.frame("ranks"), self.frame("friedman"), self.frame("pairs")];
-        let [Some(ranks), Some(friedman), Some(pairs)] = tables else { return Ok(()) };
+        let (Some(ranks), Some(pairs)) = (self.frame("ranks"), self.frame("pairs")) else {
+            return Ok(());
+        };
         if self.plan.is_uneven() {
             return Ok(());
         }
-        let diagram = critical_difference::critical_difference(ranks, friedman, &self.looks)?;
-        let effects = comparison::effect_sizes(pairs, ranks)?;
+        let diagram = critical_difference::critical_difference(ranks, &self.looks)?;
+        let effects = effect_sizes::effect_sizes(pairs, ranks, &self.looks)?;
         let told = |name: &str| {
             let table = self.tables.iter().find(|table| table.name == name);
             table.map_or_else(String::new, |table| format!(" {}", table.caption))
         };
         let (of_ranks, of_pairs) = (told("ranks"), told("pairs"));
         let caption = format!(
-            "Bars join cliques and are thick at their members; the bracket is Nemenyi's critical difference at level {ALPHA}, a test of its \
-             own on ranks alone, from which bars need not follow.{of_ranks}"
+            "Mean ranks of the final costs, 1 being the best. Bars join optimisers that Wilcoxon's signed-rank test with Holm's \
+             correction does not tell apart at level {ALPHA}, and are thick at these.{of_ranks}"
         );
         self.add("critical-difference", "Critical differences", &caption, "ranks", Some(diagram));
         let caption = format!(
             "A12 of the row's optimiser against the column's. Blue favours the row, orange the column; a star marks pairs that \
-             differ significantly at level {ALPHA}, others are pale.{of_pairs}"
+             differ significantly at level {ALPHA} by Wilcoxon's test with Holm's correction, others are pale.{of_pairs}"
         );
         self.add("effect-sizes", "Every two optimisers", &caption, "pairs", Some(effects));
         Ok(())

@@ -4,10 +4,11 @@ use polars::prelude::DataFrame;
 
 use super::curves::{reals, texts};
 use super::looks::Looks;
-use crate::figure::axis::Axis;
+use crate::analysis::ALPHA;
+use crate::figure::axis::{Axis, LONGEST_NAME};
 use crate::figure::marks::{Line, Mark};
 use crate::figure::panel::Panel;
-use crate::figure::sheet::{Anchor, fitted, text_width};
+use crate::figure::sheet::{Anchor, fitted_apart, text_width};
 use crate::figure::style::{INK, Stroke, TEXT_PT, Width};
 use crate::figure::{Figure, FigureError};
 
@@ -15,14 +16,14 @@ use crate::figure::{Figure, FigureError};
 const ROW: f64 = 4.2;
 const BAR: f64 = 1.6;
 /// Height of the axis of ranks below the upper end \[mm\].
-const AXIS: f64 = 9.4;
-/// Longest label \[mm\]; a longer one ends with an ellipsis.
-const LONGEST_NAME: f64 = 50.0;
+const AXIS: f64 = 8.4;
 /// Room between the axis and where a label's line ends, and the shortest axis in a column \[mm\].
 const GAP: f64 = 1.2;
 const SHORTEST: f64 = 20.0;
 /// Least distance of two ranks in a column \[mm\].
 const RANK: f64 = 3.2;
+/// Room for a mean rank behind its label, and around both \[mm\].
+const FOR_RANK: f64 = 13.0;
 /// How far a bar reaches over a member \[mm\].
 const OVER: f64 = 0.8;
 
@@ -48,20 +49,6 @@ impl Diagram {
         self.marks.push(Mark::Label { at, text, anchor, raised: 0.0 });
     }
 
-    /// The critical difference from the best rank on, where it ends before `last`.
-    fn bracket(&mut self, difference: f64, last: f64) {
-        let (from, to) = (self.from, self.x(1.0 + difference));
-        if to <= last {
-            let ink = Stroke::plain(INK, 0.25);
-            self.line(vec![[from, 3.8], [to, 3.8]], ink);
-            for x in [from, to] {
-                self.line(vec![[x, 3.3], [x, 4.3]], ink);
-            }
-        }
-        let told = format!("Nemenyi's critical difference {difference:.2}");
-        self.label([from - GAP, 1.6], told, Anchor::Left);
-    }
-
     /// A mean rank on the axis, and a line from there to its label.
     fn optimiser(&mut self, mean: f64, label: [f64; 2], stroke: Stroke) {
         let x = self.x(mean);
@@ -83,33 +70,31 @@ impl Diagram {
     }
 }
 
-/// Mean ranks on an axis, 1 being the best; a bar joins optimisers that do not differ significantly. From the tables `ranks` and
-/// `friedman`; the bar on top is Nemenyi's critical difference.
+/// Mean ranks on an axis, 1 being the best; a bar joins optimisers that Wilcoxon's test with Holm's correction does not tell
+/// apart. From the table `ranks`.
 ///
-/// Demšar (2006), J. Mach. Learn. Res. 7, 1–30.
-pub(super) fn critical_difference(
-    ranks: &DataFrame,
-    friedman: &DataFrame,
-    looks: &Looks,
-) -> Result<Figure, FigureError> {
+/// Demšar (2006), J. Mach. Learn. Res. 7, 1–30; Benavoli, Corani and Mangili (2016), J. Mach. Learn. Res. 17, 1–10, on why
+/// the test is one of pairs and not Nemenyi's.
+pub(super) fn critical_difference(ranks: &DataFrame, looks: &Looks) -> Result<Figure, FigureError> {
     let (labels, means) = (texts(ranks, "optimiser")?, reals(ranks, "mean rank")?);
     let cliques = texts(ranks, "cliques")?;
-    let difference = reals(friedman, "critical difference")?.first().copied().unwrap_or(f64::NAN);
     let count = labels.len();
     let half = count.div_ceil(2);
-    let told = labels.iter().zip(&means);
-    let told = told.map(|(label, mean)| format!("{} ({mean:.2})", fitted(label, LONGEST_NAME)));
-    let told: Vec<String> = told.collect();
+    let shortest = f64::max(SHORTEST, RANK * count as f64);
+    let names: Vec<String> = labels.iter().map(|label| looks.name(label).to_owned()).collect();
+    let longest = (0.5 * (Width::Page.mm() - shortest) - FOR_RANK).clamp(FOR_RANK, LONGEST_NAME);
+    let told = fitted_apart(&names, longest).into_iter().zip(&means);
+    let told: Vec<String> = told.map(|(name, mean)| format!("{name} ({mean:.2})")).collect();
     let widest = |texts: &[String]| {
         texts.iter().map(|t| text_width(t, TEXT_PT)).fold(0.0, f64::max) + 2.0 * GAP + 1.0
     };
     let (left, right) = (widest(&told[..half]), widest(&told[half..]));
-    let shortest = f64::max(SHORTEST, RANK * count as f64);
     let fits = Width::Column.mm() - left - right >= shortest;
     let width = if fits { Width::Column } else { Width::Page };
     let mut diagram = Diagram { from: left, to: width.mm() - right, count, marks: Vec::new() };
     diagram.axis();
-    diagram.bracket(difference, width.mm() - 1.0);
+    let test = format!("bars: not told apart by Wilcoxon's test, Holm's correction, α = {ALPHA}");
+    diagram.label([0.0, 1.6], test, Anchor::Left);
     let bars = bars(&mut diagram, &means, &cliques);
     let first = AXIS + BAR * (bars as f64 + 1.0) + 1.6;
     for (i, text) in told.into_iter().enumerate() {

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::names::names;
 use crate::experiment::{Entrant, Plan};
 use crate::figure::sheet::printable;
 use crate::figure::style::{COLOURS, DASHES, INK, Marker, OUTSIDE_COLOURS, PAPER, Stroke, mix};
@@ -31,6 +32,10 @@ const MOST_IN_A_PANEL: usize = 8;
 pub(super) struct Looks {
     /// Label, kind and stroke in the field's order.
     field: Vec<(String, String, Stroke)>,
+    /// What charts call them, in the field's order.
+    names: Vec<String>,
+    /// What captions have to say of the names.
+    note: String,
     /// Groups of instances as charts write them.
     titles: HashMap<String, String>,
 }
@@ -93,12 +98,25 @@ impl Looks {
             *twins += 1;
             (printable(&entrant.label), printable(&entrant.kind), stroke)
         };
-        Self { field: field.iter().map(look).collect(), titles: HashMap::new() }
+        let field: Vec<(String, String, Stroke)> = field.iter().map(look).collect();
+        let labels: Vec<&str> = field.iter().map(|(label, _, _)| label.as_str()).collect();
+        let names = names(&labels);
+        Self { field, names: names.names, note: names.note, titles: HashMap::new() }
     }
 
     /// A group of instances as charts write it; other texts as they are.
     pub(super) fn title(&self, group: &str) -> String {
         self.titles.get(group).map_or_else(|| group.to_owned(), Clone::clone)
+    }
+
+    /// What charts call an optimiser: its label without the settings that all of its kind share.
+    pub(super) fn name<'a>(&'a self, label: &'a str) -> &'a str {
+        self.find(label).map_or(label, |(i, _)| &self.names[i])
+    }
+
+    /// What captions have to say of the names, with a space before; mostly nothing.
+    pub(super) fn note(&self) -> &str {
+        &self.note
     }
 
     /// Labels in the field's order.

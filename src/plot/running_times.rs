@@ -33,6 +33,7 @@ pub(super) fn running_time_distribution(
             marks.push(Mark::Line(Line::new("", thin, column(curve, 1))));
         }
         marks.extend(facet.curves.iter().map(|c| curve_line(c, column(c, 0), looks)));
+        marks.push(Mark::Note("thin: with simulated restarts".to_owned()));
         let x = Axis::logarithmic("evaluations", evaluations, 0.0);
         let y = Axis::linear("share of targets reached", [0.0, 1.0], 0.02);
         Panel::new(x, y, marks).titled(&facet.title)

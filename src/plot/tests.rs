@@ -1,17 +1,20 @@
 //! Every chart drawn from fixed data.
 
+use std::collections::HashSet;
+
 use polars::prelude::*;
 
-use super::comparison::{effect_sizes, final_costs};
 use super::convergence::convergence;
 use super::critical_difference::critical_difference;
 use super::curves::curves;
 use super::dimensions::dimensions;
+use super::effect_sizes::effect_sizes;
+use super::final_costs::final_costs;
 use super::looks::Looks;
 use super::running_times::{expected_running_time, profiles, running_time_distribution};
 use crate::experiment::Entrant;
 use crate::figure::Figure;
-use crate::figure::stored_pictures::check;
+use crate::figure::stored_pictures::{check, texts};
 use crate::optimiser::{Hybrid, Settings};
 
 /// A field of all kinds, with labels as long as they get.
@@ -26,6 +29,28 @@ fn field(count: usize) -> Vec<Entrant> {
         Entrant::from(settings).labelled(&label)
     };
     kinds.into_iter().cycle().take(count).enumerate().map(label).collect()
+}
+
+/// A sweep over three settings of one optimiser, beside two settings that all have.
+fn swept() -> Vec<Entrant> {
+    let values = [("1.5", "1.5"), ("1.5", "2.5"), ("2.5", "1.5"), ("2.5", "2.5")];
+    let values = values.into_iter().flat_map(|(a, b)| ["0.05", "0.1"].map(|c| (a, b, c)));
+    let label = |(a, b, c)| {
+        let label =
+            format!("pso population=25 last=0.4 cognitive={a} social={b} velocity_limit={c}");
+        Entrant::from(Settings::by_name("pso").unwrap()).labelled(&label)
+    };
+    values.map(label).collect()
+}
+
+/// Labels that differ where they are cut, with characters that no drawing can have.
+fn unlike() -> Vec<Entrant> {
+    let long = "a label that somebody gave without a thought for those who read it, ".repeat(3);
+    let label = |end: &str| {
+        let label = format!("{long}{end}\u{1}\u{FFFF}");
+        Entrant::from(Settings::by_name("de").unwrap()).labelled(&label)
+    };
+    ["variant A", "variant B", "variant C"].map(label).to_vec()
 }
 
 fn labels(field: &[Entrant]) -> Vec<&str> {
@@ -63,6 +88,9 @@ fn convergence_of(count: usize, panels: &[&str]) -> Figure {
         "quartile 1" => real(rows().map(|(_, i, _, x)| 0.9 * median(i, x))),
         "median" => real(rows().map(|(_, i, _, x)| median(i, x))),
         "quartile 3" => real(rows().map(|(_, i, _, x)| 1.3 * median(i, x))),
+        "gap quartile 1" => real(rows().map(|_| f64::NAN)),
+        "gap median" => real(rows().map(|_| f64::NAN)),
+        "gap quartile 3" => real(rows().map(|_| f64::NAN)),
     );
     convergence(&frame.unwrap(), &Looks::of(&field), "J").unwrap().unwrap()
 }
@@ -115,8 +143,11 @@ fn profile(time: &str, label: &str) -> Figure {
 }
 
 fn costs(count: usize, spread: f64) -> Figure {
-    let field = field(count);
-    let labels = labels(&field);
+    costs_of(&field(count), spread)
+}
+
+fn costs_of(field: &[Entrant], spread: f64) -> Figure {
+    let labels = labels(field);
     let seeds: Vec<f64> = (0..15).map(f64::from).collect();
     let rows = || rows(&["a", "b"], &labels, &seeds);
     let cost = |i: usize, x: f64| 0.8 * (1.0 + spread * (i as f64 + (7.0 * x).sin().abs()));
@@ -126,8 +157,98 @@ fn costs(count: usize, spread: f64) -> Figure {
         "best J" => real(rows().map(|(_, i, _, x)| {
             if i > 5 && x > 11.0 { f64::INFINITY } else { cost(i, x) }
         })),
+        "gap" => real(rows().map(|_| f64::NAN)),
     );
-    final_costs(&frame.unwrap(), &Looks::of(&field), "J").unwrap().unwrap()
+    final_costs(&frame.unwrap(), &Looks::of(field), "J").unwrap().unwrap()
+}
+
+/// Costs `r² − 100` whose least is not known and is known, and `r²` with an end at zero, in panels of their own: the costs,
+/// what they are above −100 and the symbol's column with `also`.
+fn signs() -> [(&'static str, f64, f64); 3] {
+    [("unknown", 100.0, f64::NAN), ("known", 100.0, 100.0), ("zero", 0.0, 0.0)]
+}
+
+/// `r²` after so many evaluations.
+fn square(i: usize, x: f64) -> f64 {
+    if x > 1e4 { 0.0 } else { 50.0 * (-(1.0 + i as f64) * x.ln()).exp() }
+}
+
+fn convergence_below_zero() -> Figure {
+    let field = field(3);
+    let labels = labels(&field);
+    let evaluations: Vec<f64> = (0..42).map(|i| 10_f64.powf(f64::from(i) / 10.0).round()).collect();
+    let panels = signs().map(|(name, ..)| name);
+    let rows = || rows(&panels, &labels, &evaluations);
+    let sign = |panel: &str| signs().into_iter().find(|sign| sign.0 == panel).unwrap();
+    let cost = |r: (&str, usize, &str, f64), times: f64| times * square(r.1, r.3) - sign(r.0).1;
+    let gap = |r: (&str, usize, &str, f64), times: f64| cost(r, times) + sign(r.0).2;
+    let frame = df!(
+        "group" => rows().map(|r| r.0).collect::<Vec<_>>(),
+        "optimiser" => rows().map(|r| r.2).collect::<Vec<_>>(),
+        "evaluations" => real(rows().map(|r| r.3)),
+        "quartile 1" => real(rows().map(|r| cost(r, 0.5))),
+        "median" => real(rows().map(|r| cost(r, 1.0))),
+        "quartile 3" => real(rows().map(|r| cost(r, 3.0))),
+        "gap quartile 1" => real(rows().map(|r| gap(r, 0.5))),
+        "gap median" => real(rows().map(|r| gap(r, 1.0))),
+        "gap quartile 3" => real(rows().map(|r| gap(r, 3.0))),
+    );
+    convergence(&frame.unwrap(), &Looks::of(&field), "f").unwrap().unwrap()
+}
+
+fn costs_below_zero() -> Figure {
+    let field = field(3);
+    let labels = labels(&field);
+    let seeds: Vec<f64> = (0..10).map(f64::from).collect();
+    let panels = signs().map(|(name, ..)| name);
+    let rows = || rows(&panels, &labels, &seeds);
+    let sign = |panel: &str| signs().into_iter().find(|sign| sign.0 == panel).unwrap();
+    let cost = |r: (&str, usize, &str, f64)| square(r.1, 3.0_f64.powf(r.3)) - sign(r.0).1;
+    let frame = df!(
+        "group" => rows().map(|r| r.0).collect::<Vec<_>>(),
+        "optimiser" => rows().map(|r| r.2).collect::<Vec<_>>(),
+        "best f" => real(rows().map(cost)),
+        "gap" => real(rows().map(|r| cost(r) + sign(r.0).2)),
+    );
+    final_costs(&frame.unwrap(), &Looks::of(&field), "f").unwrap().unwrap()
+}
+
+/// A budget of one evaluation.
+fn one_evaluation() -> Figure {
+    let field = field(3);
+    let labels = labels(&field);
+    let rows = || rows(&[""], &labels, &[1.0]);
+    let cost = |i: usize, k: f64| (1.0 + i as f64) * k;
+    let frame = df!(
+        "group" => rows().map(|r| r.0).collect::<Vec<_>>(),
+        "optimiser" => rows().map(|r| r.2).collect::<Vec<_>>(),
+        "evaluations" => real(rows().map(|r| r.3)),
+        "quartile 1" => real(rows().map(|r| cost(r.1, 2.0))),
+        "median" => real(rows().map(|r| cost(r.1, 3.0))),
+        "quartile 3" => real(rows().map(|r| cost(r.1, 4.0))),
+        "gap quartile 1" => real(rows().map(|_| f64::NAN)),
+        "gap median" => real(rows().map(|_| f64::NAN)),
+        "gap quartile 3" => real(rows().map(|_| f64::NAN)),
+    );
+    convergence(&frame.unwrap(), &Looks::of(&field), "J").unwrap().unwrap()
+}
+
+/// Three targets reached, by one optimiser each.
+fn few_expectations() -> Figure {
+    let field = field(3);
+    let labels = labels(&field);
+    let rows = || rows(&[""], &labels, &[100.0, 63.1, 39.8]);
+    let time = |i: usize, x: f64| {
+        let own = [100.0, 63.1, 39.8][i];
+        if (x - own).abs() < 1.0 { 10.0 + 3.0 * i as f64 } else { f64::INFINITY }
+    };
+    let frame = df!(
+        "group" => rows().map(|r| r.0).collect::<Vec<_>>(),
+        "optimiser" => rows().map(|r| r.2).collect::<Vec<_>>(),
+        "above least" => real(rows().map(|r| r.3)),
+        "expected running time" => real(rows().map(|(_, i, _, x)| time(i, x))),
+    );
+    expected_running_time(&frame.unwrap(), &Looks::of(&field), "J").unwrap().unwrap()
 }
 
 fn growth(count: usize) -> Figure {
@@ -147,24 +268,21 @@ fn growth(count: usize) -> Figure {
     dimensions(&frame.unwrap(), &Looks::of(&field), "J").unwrap().unwrap()
 }
 
-fn ranks(count: usize) -> (Vec<Entrant>, DataFrame) {
-    let field = field(count);
+fn ranks(field: &[Entrant]) -> DataFrame {
+    let count = field.len();
     let means: Vec<f64> = (0..count).map(|i| 1.1 + 0.9 * i as f64).collect();
     let cliques: Vec<String> =
         (0..count).map(|i| format!("{} {}", i / 3 + 1, (i + 1) / 3 + 1)).collect();
-    let frame = df!("optimiser" => labels(&field), "mean rank" => means, "cliques" => cliques);
-    (field, frame.unwrap())
+    df!("optimiser" => labels(field), "mean rank" => means, "cliques" => cliques).unwrap()
 }
 
-fn differences(count: usize) -> Figure {
-    let (field, ranks) = ranks(count);
-    let friedman = df!("critical difference" => [2.1]).unwrap();
-    critical_difference(&ranks, &friedman, &Looks::of(&field)).unwrap()
+fn differences(field: &[Entrant]) -> Figure {
+    critical_difference(&ranks(field), &Looks::of(field)).unwrap()
 }
 
-fn effects(count: usize) -> Figure {
-    let (field, ranks) = ranks(count);
-    let labels = labels(&field);
+fn effects(field: &[Entrant]) -> Figure {
+    let count = field.len();
+    let labels = labels(field);
     let pairs = || (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
     let frame = df!(
         "first" => pairs().map(|(i, _)| labels[i]).collect::<Vec<_>>(),
@@ -172,7 +290,7 @@ fn effects(count: usize) -> Figure {
         "A12" => real(pairs().map(|(i, j)| 0.5 + 0.5 * (j - i) as f64 / count as f64)),
         "p Holm" => real(pairs().map(|(i, j)| if j - i > 2 { 0.01 } else { 0.2 })),
     );
-    effect_sizes(&frame.unwrap(), &ranks).unwrap()
+    effect_sizes(&frame.unwrap(), &ranks(field), &Looks::of(field)).unwrap()
 }
 
 /// Every chart by name.
@@ -184,24 +302,49 @@ fn charts() -> Vec<(&'static str, Figure)> {
             convergence_of(6, &["sphere", "ellipsoid", "rastrigin", "rosenbrock"]),
         ),
         ("convergence-crowd", convergence_of(20, &[""])),
+        ("convergence-below-zero", convergence_below_zero()),
+        ("convergence-one-evaluation", one_evaluation()),
         ("dimensions", growth(5)),
         ("running-time-distribution", distribution()),
         ("expected-running-time", expectation()),
+        ("expected-running-time-few", few_expectations()),
         ("performance-profiles", profile("ratio", "ratio to the fewest evaluations")),
         ("data-profiles", profile("simplex gradients", "simplex gradients")),
         ("final-costs", costs(8, 0.05)),
         ("final-costs-wide", costs(8, 3.0)),
         ("final-costs-alone", costs(1, 0.5)),
-        ("effect-sizes", effects(5)),
-        ("effect-sizes-crowd", effects(20)),
-        ("critical-difference", differences(4)),
-        ("critical-difference-crowd", differences(20)),
+        ("final-costs-below-zero", costs_below_zero()),
+        ("final-costs-swept", costs_of(&swept(), 0.05)),
+        ("effect-sizes", effects(&field(5))),
+        ("effect-sizes-crowd", effects(&field(20))),
+        ("effect-sizes-swept", effects(&swept())),
+        ("critical-difference", differences(&field(4))),
+        ("critical-difference-crowd", differences(&field(20))),
+        ("critical-difference-swept", differences(&swept())),
     ]
 }
 
 #[test]
 fn charts_look_as_stored() {
     check(&charts());
+}
+
+/// Eight combinations of a sweep, and labels that differ where they are cut: no two look the same.
+#[test]
+fn optimisers_can_be_told_apart() {
+    for (field, what) in [(swept(), "swept"), (unlike(), "unlike")] {
+        for figure in [costs_of(&field, 0.05), effects(&field), differences(&field)] {
+            let texts = texts(figure.tree().unwrap().root());
+            let names = texts.iter().map(|(text, _)| text.as_str());
+            let names: Vec<&str> = names.filter(|t| t.contains("pso") || t.contains('…')).collect();
+            let distinct: HashSet<&str> = names.iter().copied().collect();
+            assert!(names.len() >= field.len(), "{what}: {names:?}");
+            assert_eq!(distinct.len(), field.len(), "{what}: {names:?}");
+            for setting in ["population", "last="] {
+                assert!(names.iter().all(|name| !name.contains(setting)), "{what}: {names:?}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -151,7 +151,7 @@ impl Subject for TaskSubject {
         format!("{cost:.6}")
     }
 
-    fn resolution(&self, lowest: f64) -> f64 {
+    fn resolution(&self, lowest: f64, _: f64) -> f64 {
         SAME_MOTION * lowest.abs()
     }
 

@@ -137,7 +137,7 @@ fn write_tables(tables: &[Table], own: &[&str], folder: &Path) -> Result<(), Rep
         if !is_curve {
             let text = format!("{}\n{caption}\n", markdown(frame)?);
             write_file(&folder.join(format!("{name}.md")), text.as_bytes())?;
-            let text = format!("% {caption}\n{}", latex(frame)?);
+            let text = latex(frame, name, caption)?;
             write_file(&folder.join(format!("{name}.tex")), text.as_bytes())?;
         }
     }

@@ -15,7 +15,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 # A word that is in each figure, so that its text is text.
 WORDS = {
     "acceleration-sweep": "acceleration", "base-attitude": "pitch", "convergence": "evaluations",
-    "critical-difference": "Nemenyi", "data-profiles": "simplex gradients",
+    "critical-difference": "Wilcoxon", "data-profiles": "simplex gradients",
     "dimensions": "variables", "effect-sizes": "lower",
     "expected-running-time": "expected", "final-costs": "final", "jerk-sweep": "jerk", "joint-angles": "joint",
     "joint-derivatives": "jerk", "pareto": "residual", "performance-profiles": "ratio",

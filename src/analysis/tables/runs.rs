@@ -19,14 +19,19 @@ pub(super) fn table(analysis: &Analysis<'_>) -> PolarsResult<Table> {
         "seed" => counts(|run| run.seed),
         cost => reals(|run| run.cost),
     )?;
+    let gap = |run: &Run| {
+        let known = analysis.plan.instances[run.instance].subject.known_cost();
+        run.cost - known.unwrap_or(f64::NAN)
+    };
     let runs: Vec<Option<&Run>> = analysis.runs.iter().map(Some).collect();
     let tail = df!(
         "evaluations" => counts(|run| run.evaluations),
         "budget" => counts(|run| run.budget),
+        "gap" => analysis.runs.iter().map(gap).collect::<Vec<f64>>(),
     )?;
     frame = frame.hstack(&measure_columns(analysis.plan, &runs))?.hstack(tail.columns())?;
     let caption = "All stored runs with their certified best costs, and what else is measured of them; a failed run's cost is \
-        infinite.";
+        infinite. The gap is how far the cost lies above the least known, where there is one.";
     Ok(Table::curve("runs", caption, frame))
 }
 

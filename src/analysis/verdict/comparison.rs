@@ -132,9 +132,10 @@ impl<'a> Standings<'a> {
 
     fn by_how_much(&self) -> String {
         let winner = self.order[0];
-        let mut told = match (self.order.get(self.level), self.order.last()) {
-            (Some(&second), Some(&last)) => self.costs(winner, second, last),
-            _ => "Not at all in final costs.".to_owned(),
+        let mut told = if self.level < self.order.len() {
+            self.costs(winner)
+        } else {
+            "Not at all in final costs.".to_owned()
         };
         if let Some(times) = running_time::told(self.analysis, self.blocks, winner) {
             told = told + " " + &times;
@@ -142,18 +143,38 @@ impl<'a> Standings<'a> {
         told
     }
 
-    /// The winner's costs against the runner-up's and the last one's.
-    fn costs(&self, winner: usize, second: usize, last: usize) -> String {
-        let of = |place: &str, o: usize, value: &dyn Fn(usize) -> String| {
-            format!("that of the {place}, {}, {}", self.name(o), value(o))
-        };
+    /// Those that share the mean rank of the one at a place of the order.
+    fn level_with(&self, place: usize) -> Vec<usize> {
+        let ranks = &self.blocks.friedman.mean_ranks;
+        let rank = ranks[self.order[place]];
+        self.order.iter().copied().filter(|&o| ranks[o] == rank).collect()
+    }
+
+    /// Some optimisers in words, and what each has.
+    fn of(&self, places: [&str; 2], level: &[usize], value: &dyn Fn(usize) -> String) -> String {
+        let mut values: Vec<String> = level.iter().map(|&o| value(o)).collect();
+        values.dedup();
+        let names = some_of(&self.names(level.iter().copied()), self.order.len() - 1);
+        match level {
+            [_] => format!("that of the {}, {names}, {}", places[0], values[0]),
+            _ if level.len() + self.level == self.order.len() => {
+                format!("that of {names}, which are level, {}", list(&values))
+            }
+            _ => format!("that of the {}, {names}, which are level, {}", places[1], list(&values)),
+        }
+    }
+
+    /// The winner's costs against those of who comes next and who is last.
+    fn costs(&self, winner: usize) -> String {
+        let (second, last) = (self.level_with(self.level), self.level_with(self.order.len() - 1));
         let against = |value: &dyn Fn(usize) -> String| {
             if self.order.len() == 2 {
-                of("other", second, value)
+                self.of(["other", ""], &second, value)
             } else if second == last {
-                of("last", last, value)
+                self.of(["last", ""], &last, value)
             } else {
-                format!("{} and {}", of("runner-up", second, value), of("last", last, value))
+                let second = self.of(["runner-up", "runners-up"], &second, value);
+                format!("{second} and {}", self.of(["last", "last"], &last, value))
             }
         };
         let symbol = self.analysis.plan.cost_symbol();
@@ -167,10 +188,13 @@ impl<'a> Standings<'a> {
             format!("The mean rank of {named} is {}, {}.", rank(winner), against(&rank))
         }];
         told.extend(self.wins(winner));
+        let mut effects: Vec<String> =
+            second.iter().map(|&o| format!("{:.2}", self.blocks.effect(winner, o))).collect();
+        effects.dedup();
         told.push(format!(
-            "A run of {named} ends lower than one of {} with probability {:.2} (A12, ties count half).",
-            self.name(second),
-            self.blocks.effect(winner, second)
+            "A run of {named} ends lower than one of {} with probability {} (A12, ties count half).",
+            some_of(&self.names(second), self.order.len() - 1),
+            list(&effects)
         ));
         told.join(" ")
     }

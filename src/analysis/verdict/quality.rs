@@ -15,30 +15,45 @@ pub(super) fn finding(analysis: &Analysis<'_>) -> Option<Finding> {
 fn solved(analysis: &Analysis<'_>) -> Option<String> {
     let instances = &analysis.plan.instances;
     let least: Vec<Option<f64>> = instances.iter().map(|i| i.subject.least_cost()).collect();
-    let known = least.iter().flatten().count();
-    if known == 0 {
+    let is_known = |i: &usize| least[*i].is_some();
+    let known: Vec<usize> = (0..instances.len()).filter(is_known).collect();
+    if known.is_empty() {
         return None;
     }
-    let mut solved = vec![vec![false; instances.len()]; analysis.plan.optimisers.len()];
+    let count = analysis.plan.optimisers.len();
+    let (mut solved, mut tried) =
+        (vec![vec![false; instances.len()]; count], vec![vec![false; instances.len()]; count]);
     for run in analysis.runs {
+        tried[run.optimiser][run.instance] = true;
         solved[run.optimiser][run.instance] |=
             least[run.instance].is_some_and(|least| run.cost - least <= SAME);
     }
-    let count = |solved: &Vec<bool>| solved.iter().filter(|&&solved| solved).count();
-    let mut by_count: Vec<(usize, &str)> =
-        solved.iter().enumerate().map(|(o, s)| (count(s), analysis.optimiser(o))).collect();
-    by_count.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
-    let unsolved = known - (0..instances.len()).filter(|&i| solved.iter().any(|s| s[i])).count();
-    let (most, _) = by_count.first()?;
-    if *most == 0 {
+    let of = |flags: &[bool]| known.iter().filter(|&&i| flags[i]).count();
+    let mut by_count: Vec<usize> = (0..count).collect();
+    by_count.sort_by_key(|&o| std::cmp::Reverse(of(&solved[o])));
+    if of(&solved[*by_count.first()?]) == 0 {
         return Some("No run solved an instance to 10⁻⁸.".to_owned());
     }
-    let told: Vec<String> =
-        by_count.iter().map(|(count, name)| format!("{name} {count}")).collect();
-    let rest = match unsolved {
+    let told = |&o: &usize| {
+        let (name, solved, tried) = (analysis.optimiser(o), of(&solved[o]), of(&tried[o]));
+        if tried < known.len() {
+            format!("{name} {solved} of the {tried} that it has tried")
+        } else {
+            format!("{name} {solved}")
+        }
+    };
+    let told: Vec<String> = by_count.iter().map(told).collect();
+    // Of what some have not tried nobody knows.
+    let (whole, open): (Vec<usize>, Vec<usize>) =
+        known.iter().partition(|&&i| tried.iter().all(|flags| flags[i]));
+    let unsolved = whole.iter().filter(|&&i| !solved.iter().any(|flags| flags[i])).count();
+    let mut rest = match unsolved {
         0 => String::new(),
         n => format!(" Nobody solved {n} of them."),
     };
-    let known = plural(known, "instance");
+    if !open.is_empty() {
+        rest += &format!(" Not all optimisers have tried {} yet.", plural(open.len(), "instance"));
+    }
+    let known = plural(known.len(), "instance");
     Some(format!("Of {known}, solved to 10⁻⁸ in any run: {}.{rest}", list(&told)))
 }

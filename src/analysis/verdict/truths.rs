@@ -2,6 +2,7 @@
 
 use super::tests::functions;
 use crate::analysis::handmade::{answer, findings, plan, runs};
+use crate::experiment::Run;
 
 const TWO: &str = "name = ['sphere', 'rastrigin']";
 
@@ -95,4 +96,41 @@ fn each_of_the_level_ones_is_told_from_the_rest_by_itself() {
     let significance = answer(&told, "Is it significant?");
     let pairs = "random differs from pso; de does not differ significantly from pso.";
     assert!(significance.contains(pairs), "{significance}");
+}
+
+/// Two optimisers share the middle rank and two the last: none of them is the runner-up or the last.
+#[test]
+fn equals_are_named_together() {
+    let plan = functions(8, "name = ['sphere']", &["random", "de", "pso", "l-shade", "cma-es"]);
+    let told = findings(
+        &plan,
+        &runs(&plan, |run| vec![(1, 9.0), (2, [1.0, 2.0, 2.0, 3.0, 3.0][run.optimiser])]),
+    );
+    let by = answer(&told, "By how much?");
+    let costs = "The median cost of random is f 1.000, that of the runners-up, de and pso, which are level, 2.000 and \
+                 that of the last, l-shade and cma-es, which are level, 3.000. A run of random ends lower than one of de \
+                 and pso with probability 1.00 (A12, ties count half).";
+    assert!(by.starts_with(costs), "{by}");
+    let plan = functions(8, "name = ['sphere']", &["random", "de", "pso"]);
+    let told =
+        findings(&plan, &runs(&plan, |run| vec![(1, 9.0), (2, [1.0, 2.0, 2.0][run.optimiser])]));
+    let by = answer(&told, "By how much?");
+    let costs =
+        "The median cost of random is f 1.000, that of both others, which are level, 2.000. A run";
+    assert!(by.starts_with(costs), "{by}");
+}
+
+/// Of four instances the second is solved, the third is not, and the fourth has been tried by one alone.
+#[test]
+fn what_is_not_tried_yet_is_not_unsolved() {
+    let plan = functions(1, "name = ['sphere']\ninstances = 4", &["de", "random"]);
+    let all = runs(&plan, |run| vec![(1, if run.instance < 2 { 1e-9 } else { 1.0 })]);
+    let tried = |run: &Run| run.instance < 3 || (run.instance, run.optimiser) == (3, 0);
+    let stored: Vec<Run> = all.into_iter().filter(tried).collect();
+    let told = findings(&plan, &stored);
+    assert_eq!(
+        answer(&told, "How good is it?"),
+        "Of 4 instances, solved to 10⁻⁸ in any run: de 2 and random 2 of the 3 that it has tried. Nobody solved 1 of \
+         them. Not all optimisers have tried 1 instance yet."
+    );
 }

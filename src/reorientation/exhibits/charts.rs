@@ -2,8 +2,10 @@
 
 use super::best::BestMotion;
 use super::pareto::{pareto, trades};
-use super::sweeps::{Swept, points, sweep};
-use crate::exhibit::Chart;
+use super::sweeps::{MOST_PANELS, Swept, points, sweep, varies};
+use super::words::AT_GOAL_DEG;
+use crate::exhibit::words::list;
+use crate::exhibit::{Chart, Finding};
 use crate::reorientation::best_known::BestKnown;
 
 /// The names that the charts may have.
@@ -17,16 +19,31 @@ pub(super) const NAMES: [&str; 7] = [
     "pareto",
 ];
 
-/// A chart for each setting that varies, and one of what the weight trades.
-pub(super) fn charts(best: &[BestMotion<'_>]) -> Vec<Chart> {
+/// A chart for each setting that varies, and one of what the weight trades; and what is said of those that are left out.
+pub(super) fn charts(best: &[BestMotion<'_>]) -> (Vec<Chart>, Option<Finding>) {
     let bound = best.iter().filter_map(|m| BestKnown::of(m.problem)).find_map(|k| k.free_form_j);
-    let of = |swept: Swept| {
-        let figure = sweep(&points(best, swept), swept, bound)?;
+    let (mut charts, mut left_out) = (Vec::new(), Vec::new());
+    for swept in Swept::ALL {
+        let points = points(best, swept);
         let (name, title, caption) = told(swept);
-        let (name, title, caption) = (name.to_owned(), title.to_owned(), caption.to_owned());
-        Some(Chart { name, title, caption, table: "best".into(), figure })
+        let Some(figure) = sweep(&points, swept, bound) else {
+            left_out.extend(varies(&points).then_some(name));
+            continue;
+        };
+        let is_joined = matches!(swept, Swept::WeightBase | Swept::Terms | Swept::Pieces);
+        let joined = if is_joined { "" } else { ", and joined to no other" };
+        let caption = format!(
+            "{caption} Motions that end more than {AT_GOAL_DEG}° off the goal are hollow{joined}. Of several poses \
+             each has a thin line."
+        );
+        let (name, title) = (name.to_owned(), title.to_owned());
+        charts.push(Chart { name, title, caption, table: "best".into(), figure });
+    }
+    let told = |names: &[&str]| {
+        let why = format!("other settings have more than {MOST_PANELS} combinations");
+        Finding::new("Which charts are left out?", format!("{}: {why}.", list(names)))
     };
-    let mut charts: Vec<Chart> = Swept::ALL.into_iter().filter_map(of).collect();
+    let left_out = (!left_out.is_empty()).then(|| told(&left_out));
     charts.extend(pareto(&trades(best)).map(|figure| Chart {
         name: "pareto".to_owned(),
         title: "Residual against duration".to_owned(),
@@ -36,7 +53,7 @@ pub(super) fn charts(best: &[BestMotion<'_>]) -> Vec<Chart> {
         table: "pareto".into(),
         figure,
     }));
-    charts
+    (charts, left_out)
 }
 
 /// Name, title and caption of a sweep's chart.
@@ -60,14 +77,14 @@ fn told(swept: Swept) -> (&'static str, &'static str, &'static str) {
         Swept::JerkLimit => (
             "jerk-sweep",
             "Limit on jerks",
-            "Duration of the best motion against the limit on jerks. The dashed line, where there is one, is the \
-             law that holds while jerk alone limits the motion.",
+            "Duration of the best motion against the limit on jerks. Short dashes, where there are any, are the \
+             law that holds while jerk alone limits the motion, from the lowest limit on at which the goal is reached.",
         ),
         Swept::Terms => (
             "terms-sweep",
             "Number of terms",
-            "Cost of the best motion against the number of free coefficients per joint. The dashed line, where there is one, \
-             is the least cost found for motions of any shape, of piecewise constant jerk.",
+            "Cost of the best motion against the number of free coefficients per joint. Short dashes, where there are any, \
+             are the least cost found for motions of any shape, of piecewise constant jerk.",
         ),
         Swept::Pieces => (
             "pieces-sweep",

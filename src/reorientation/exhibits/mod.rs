@@ -35,12 +35,13 @@ const MOST_TOLD: usize = 24;
 /// All that there is to show of the tasks of a plan.
 pub(super) fn exhibits(results: &Results<'_>) -> Exhibits {
     let best = best_motions(results);
+    let (leading_charts, left_out) = charts::charts(&best);
     let mut exhibits = Exhibits {
         sweep: sweep_finding::finding(&best),
         quality: quality::finding(results, &best),
-        findings: motion_finding::finding(results, &best).into_iter().collect(),
+        findings: motion_finding::finding(results, &best).into_iter().chain(left_out).collect(),
         lines: lines(&best),
-        leading_charts: charts::charts(&best),
+        leading_charts,
         scenes: scene::scenes(&best),
         scenes_found: best.len(),
         table_names: vec!["pareto", "motion"],

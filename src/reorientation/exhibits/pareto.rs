@@ -4,7 +4,7 @@ use polars::prelude::df;
 
 use super::best::BestMotion;
 use super::sweep_finding::weight_varies;
-use super::sweeps::{MOST_CURVES, duration, others};
+use super::sweeps::{MOST_CURVES, MOST_PANELS, duration, others};
 use crate::exhibit::Table;
 use crate::figure::Figure;
 use crate::figure::axis::Axis;
@@ -84,7 +84,7 @@ pub(super) fn trades(best: &[BestMotion<'_>]) -> Vec<Trade> {
         return Vec::new();
     }
     let trade = |motion: &BestMotion<'_>| Trade {
-        others: others(motion.instance, "weight_base"),
+        others: others(motion.instance, &["weight_base"]).join(", "),
         weight: motion.problem.task().base_weight,
         duration: motion.duration,
         residual_deg: motion.residual_deg,
@@ -150,24 +150,32 @@ fn fronts(trades: &[Trade]) -> Vec<Front> {
 }
 
 /// Residual against duration of the best motions of all weights, a front for each task but for its weight; filled points
-/// are efficient. Of a single front weights stand beside points where there is room. None where
-/// there are no trades or too many fronts.
+/// are efficient. Of a single front weights stand beside points where there is room; more than a few have panels of their
+/// own. None where there are no trades or too many fronts.
 pub(super) fn pareto(trades: &[Trade]) -> Option<Figure> {
     let fronts = fronts(trades);
-    if fronts.is_empty() || fronts.len() > MOST_CURVES {
+    if fronts.is_empty() || fronts.len() > MOST_PANELS {
         return None;
     }
     let values = |k: usize| range(fronts.iter().flat_map(Front::all).map(|motion| motion[k]), 0.0);
     let x = Axis::linear(&duration(), values(0), 0.12);
     let y = Axis::linear("residual [°]", values(1), 0.08);
+    let alone = ["efficient", "beaten by another weight"];
+    let stroke = |i: usize| Stroke::of(i).with_marker(Marker::ALL[i % Marker::ALL.len()]);
+    if fronts.len() > MOST_CURVES {
+        let panel = |front: &Front| {
+            Panel::new(x.clone(), y.clone(), front.marks(stroke(0), alone)).titled(&front.name)
+        };
+        return Some(Figure::grid(fronts.iter().map(panel).collect()));
+    }
     let mut marks = Vec::new();
     for (i, front) in fronts.iter().enumerate() {
-        let stroke = Stroke::of(i).with_marker(Marker::ALL[i % Marker::ALL.len()]);
-        let names = match fronts.len() {
-            1 => ["efficient", "beaten by another weight"],
-            _ => [front.name.as_str(), ""],
-        };
+        let stroke = stroke(i);
+        let names = if fronts.len() == 1 { alone } else { [front.name.as_str(), ""] };
         marks.extend(front.marks(stroke, names));
+    }
+    if fronts.len() > 1 && fronts.iter().any(|front| !front.beaten.is_empty()) {
+        marks.push(Mark::Note(format!("hollow: {}", alone[1])));
     }
     if let [front] = &fronts[..] {
         let all: Vec<[f64; 3]> = front.all().copied().collect();

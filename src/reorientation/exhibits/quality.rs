@@ -3,15 +3,13 @@
 use std::collections::BTreeSet;
 
 use super::best::BestMotion;
-use super::words::off_the_goal;
+use super::words::{AT_GOAL_DEG, off_the_goal};
 use crate::exhibit::Finding;
 use crate::exhibit::words::{list, number, plural, span};
 use crate::experiment::{Results, Run};
 use crate::reorientation::best_known::BestKnown;
 use crate::reorientation::subject::{SAME_MOTION, TaskSubject};
 
-/// Residuals below count as none \[°\].
-const AT_GOAL_DEG: f64 = 0.01;
 /// Most optimisers that are named as the best.
 const MOST_NAMES: usize = 5;
 
@@ -21,7 +19,7 @@ pub(super) fn finding(results: &Results<'_>, best: &[BestMotion<'_>]) -> Option<
     let answer = match best {
         [] => return None,
         [only] if tasks == 1 => one_task(results, only),
-        best => many_tasks(best, tasks),
+        best => many_tasks(best, tasks, tried(results)),
     };
     Some(Finding::new("How good is it?", answer))
 }
@@ -52,14 +50,20 @@ fn winners(results: &Results<'_>, lowest: &Run) -> String {
     }
 }
 
-fn many_tasks(best: &[BestMotion<'_>], tasks: usize) -> String {
+/// How many of the tasks have a run, whatever it found.
+fn tried(results: &Results<'_>) -> usize {
+    let tried: BTreeSet<usize> = results.runs.iter().map(|run| run.instance).collect();
+    tried.into_iter().filter_map(|i| TaskSubject::of(&results.instances[i])).count()
+}
+
+fn many_tasks(best: &[BestMotion<'_>], tasks: usize, tried: usize) -> String {
     let gap = |motion: &BestMotion<'_>| {
         BestKnown::of(motion.problem).map(|known| (motion.run.cost - known.j) / known.j)
     };
     let gaps: Vec<f64> = best.iter().filter_map(gap).collect();
     let reached = gaps.iter().filter(|&&gap| gap.abs() <= SAME_MOTION).count();
     let beaten = gaps.iter().filter(|&&gap| gap < -SAME_MOTION).count();
-    let all = plural(tasks, "instance");
+    let all = plural(tried, "instance");
     let told = match gaps.len() {
         0 => format!("No best cost is known of the {all}."),
         known => {
@@ -82,8 +86,13 @@ fn many_tasks(best: &[BestMotion<'_>], tasks: usize) -> String {
     };
     let home = best.iter().filter(|motion| motion.residual_deg <= AT_GOAL_DEG).count();
     let durations: Vec<f64> = best.iter().map(|motion| motion.duration).collect();
+    let open = match tasks - tried {
+        0 => String::new(),
+        1 => " One more is not tried yet.".to_owned(),
+        open => format!(" {open} more are not tried yet."),
+    };
     format!(
-        "{told} The base ends within 0.01° of the goal on {home} of {all}, and the best motions take {}.",
+        "{told} The base ends within 0.01° of the goal on {home} of {all}, and the best motions take {}.{open}",
         span(&durations, " s")
     )
 }

@@ -10,11 +10,13 @@ use crate::reorientation::motion::Motion;
 use crate::robot::{MovingJoint, Robot};
 use crate::task::Task;
 
-/// Most instances whose best motion is shown.
-const MOST_SCENES: usize = 24;
+/// Most instances whose best motion is shown: some five megabytes of a page.
+const MOST_SCENES: usize = 200;
 
-/// Intervals between the frames of a motion.
+/// Intervals between the frames of a motion, and where there are more than a few motions; the page draws what is between.
 const INTERVALS: usize = 120;
+const FEW: usize = 24;
+const INTERVALS_OF_MANY: usize = 60;
 
 /// The best motion of an instance.
 #[derive(Debug, Clone, Serialize)]
@@ -53,9 +55,9 @@ struct JointScene {
 }
 
 impl<'a> MotionScene<'a> {
-    fn of(best: &'a BestMotion<'_>) -> Self {
+    fn of(best: &'a BestMotion<'_>, intervals: usize) -> Self {
         let (run, task) = (best.run, best.problem.task());
-        let motion = best.sample(INTERVALS);
+        let motion = best.sample(intervals);
         Self {
             label: &best.instance.label,
             optimiser: best.optimiser,
@@ -73,7 +75,8 @@ impl<'a> MotionScene<'a> {
 /// The first of the best motions.
 pub(super) fn scenes(best: &[BestMotion<'_>]) -> Vec<Scene> {
     let first = best.iter().take(MOST_SCENES);
-    first.filter_map(|motion| Scene::new(&MotionScene::of(motion))).collect()
+    let intervals = if best.len() > FEW { INTERVALS_OF_MANY } else { INTERVALS };
+    first.filter_map(|motion| Scene::new(&MotionScene::of(motion, intervals))).collect()
 }
 
 fn frames(robot: &Robot, motion: &Motion) -> Vec<Posture> {

@@ -1,12 +1,15 @@
 //! What the best motion is worth over a swept setting.
 
 use super::best::BestMotion;
+use super::words::AT_GOAL_DEG;
+use crate::analysis::statistics::median;
+use crate::exhibit::words::plural;
 use crate::experiment::Instance;
 use crate::figure::Figure;
 use crate::figure::axis::Axis;
 use crate::figure::marks::{Line, Mark};
-use crate::figure::panel::{MARGIN, Panel, extent, range};
-use crate::figure::style::{Marker, Stroke};
+use crate::figure::panel::{MARGIN, Panel, range};
+use crate::figure::style::{INK, Marker, PAPER, Stroke, mix};
 use crate::reorientation::sweep::{shown, title};
 use crate::reorientation::symbols::{K_B, T_F};
 
@@ -27,8 +30,12 @@ pub(super) enum Swept {
     Pieces,
 }
 
-/// Most curves of a chart.
+/// Most curves of a panel, and how many it rather has.
 pub(super) const MOST_CURVES: usize = 8;
+const FEW_CURVES: usize = 4;
+/// Most panels in a row, and in a chart.
+const ACROSS: usize = 4;
+pub(super) const MOST_PANELS: usize = 24;
 
 impl Swept {
     /// All of them.
@@ -68,8 +75,10 @@ impl Swept {
 /// The best motion at one value of a setting.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
-    /// All other settings, as charts write them.
-    pub(super) others: String,
+    /// All other settings but the pose, as charts write them.
+    pub(super) others: Vec<String>,
+    /// Which pose; empty where there is but one.
+    pub(super) pose: String,
     pub(super) setting: f64,
     pub(super) cost: f64,
     /// Error of the base \[°\].
@@ -78,123 +87,311 @@ pub(super) struct Point {
     pub(super) duration: f64,
 }
 
-/// The best motions at the values of a setting; none where an instance has none.
+impl Point {
+    /// Whether the motion ends elsewhere than at the goal, so that its duration does not compare.
+    fn misses(&self) -> bool {
+        self.residual_deg > AT_GOAL_DEG
+    }
+}
+
+/// The setting that tells tasks of one group apart.
+const POSE: &str = "pose";
+
+/// The best motions at the values of a setting, those that have one.
 pub(super) fn points(best: &[BestMotion<'_>], swept: Swept) -> Vec<Point> {
     let point = |motion: &BestMotion<'_>| {
-        Some(Point {
-            others: others(motion.instance, swept.name()),
+        let own = others(motion.instance, &[swept.name(), POSE]);
+        let point = Point {
+            others: own,
+            pose: motion.instance.coordinate(POSE).map_or_else(String::new, shown),
             setting: motion.instance.coordinate(swept.name())?.real()?,
             cost: motion.run.cost,
             residual_deg: motion.residual_deg,
             duration: motion.duration,
-        })
+        };
+        [point.cost, point.residual_deg, point.duration]
+            .iter()
+            .all(|v| v.is_finite())
+            .then_some(point)
     };
     best.iter().filter_map(point).collect()
 }
 
-/// The settings of an instance but for one, as charts write them.
-pub(super) fn others(instance: &Instance, setting: &str) -> String {
-    let others = instance.coordinates.iter().filter(|c| c.setting != setting);
-    let titles = others.map(|c| title(&c.setting, &shown(&c.value)));
-    titles.collect::<Vec<_>>().join(" ")
+/// The settings of an instance but for some, as charts write them.
+pub(super) fn others(instance: &Instance, settings: &[&str]) -> Vec<String> {
+    let others = instance.coordinates.iter().filter(|c| !settings.contains(&c.setting.as_str()));
+    others.map(|c| title(&c.setting, &shown(&c.value))).collect()
 }
 
-/// The best motions over one setting; one curve for each combination of the others.
-struct Sweep {
-    names: Vec<String>,
-    /// Setting, cost, residual \[°\] and duration \[s\], by curve.
-    curves: Vec<Vec<[f64; 4]>>,
+/// Whether a setting takes several values where all others are the same.
+pub(super) fn varies(points: &[Point]) -> bool {
+    let is_same = |a: &Point, b: &Point| a.others == b.others && a.pose == b.pose;
+    let mut pairs = points.iter().enumerate();
+    pairs.any(|(i, a)| points[..i].iter().any(|b| is_same(a, b) && a.setting != b.setting))
 }
 
-impl Sweep {
-    /// None where the setting does not vary, or other settings give too many curves.
-    fn of(points: &[Point]) -> Option<Self> {
-        let mut sweep = Self { names: Vec::new(), curves: Vec::new() };
-        for point in points {
-            let curve = sweep.names.iter().position(|known| *known == point.others);
-            let curve = curve.unwrap_or_else(|| {
-                sweep.names.push(point.others.clone());
-                sweep.curves.push(Vec::new());
-                sweep.names.len() - 1
-            });
-            let values = [point.setting, point.cost, point.residual_deg, point.duration];
-            sweep.curves[curve].push(values);
-        }
-        sweep.curves.iter_mut().for_each(|curve| curve.sort_by(|a, b| a[0].total_cmp(&b[0])));
-        let varies = sweep.curves.iter().any(|c| c.windows(2).any(|w| w[0][0] != w[1][0]));
-        (varies && sweep.curves.len() <= MOST_CURVES).then_some(sweep)
+/// One combination of all other settings: its poses, each in the order of the setting.
+struct Combination<'a> {
+    others: &'a [String],
+    poses: Vec<Vec<&'a Point>>,
+}
+
+impl Combination<'_> {
+    /// Whether the task has poses to choose from.
+    fn is_posed(&self) -> bool {
+        self.poses.iter().flatten().any(|point| !point.pose.is_empty())
     }
+}
 
-    /// One of the ordinates of [`Self::curves`] over the setting.
-    fn lines(&self, ordinate: usize) -> Vec<Line> {
-        let lines = self.names.iter().zip(&self.curves).enumerate().map(|(i, (name, curve))| {
-            let points = curve.iter().map(|values| [values[0], values[ordinate]]).collect();
-            let marker = Marker::ALL[i % Marker::ALL.len()];
-            let stroke = Stroke::of(i).with_marker(marker);
-            let name = if self.names.len() > 1 { name.as_str() } else { "" };
-            Line::new(name, stroke, points)
+fn combinations(points: &[Point]) -> Vec<Combination<'_>> {
+    let mut all: Vec<Combination<'_>> = Vec::new();
+    for point in points {
+        let place = all.iter().position(|own| own.others == point.others).unwrap_or_else(|| {
+            all.push(Combination { others: &point.others, poses: Vec::new() });
+            all.len() - 1
         });
-        lines.collect()
+        let poses = &mut all[place].poses;
+        match poses.iter_mut().find(|pose| pose[0].pose == point.pose) {
+            Some(pose) => pose.push(point),
+            None => poses.push(vec![point]),
+        }
+    }
+    for pose in all.iter_mut().flat_map(|own| &mut own.poses) {
+        pose.sort_by(|a, b| a.setting.total_cmp(&b.setting));
+    }
+    all
+}
+
+/// A panel's title, and its combinations, each with what the title does not say.
+type Facet<'a> = (String, Vec<(String, &'a Combination<'a>)>);
+
+/// The combinations in as few panels as have few curves each; none where these are too many.
+fn facets<'a>(all: &'a [Combination<'a>]) -> Option<Vec<Facet<'a>>> {
+    let depth = all.iter().map(|own| own.others.len()).max()?;
+    let split = |depth: usize| {
+        let mut facets: Vec<Facet<'_>> = Vec::new();
+        for own in all {
+            let (title, rest) = own.others.split_at(depth.min(own.others.len()));
+            let (title, rest) = (title.join(", "), rest.join(", "));
+            match facets.iter_mut().find(|facet| facet.0 == title) {
+                Some(facet) => facet.1.push((rest, own)),
+                None => facets.push((title, vec![(rest, own)])),
+            }
+        }
+        facets
+    };
+    let choices = [FEW_CURVES, MOST_CURVES].into_iter();
+    let mut choices = choices.flat_map(|most| (0..=depth).map(move |depth| (most, depth)));
+    choices.find_map(|(most, depth)| {
+        let facets = split(depth);
+        let fits = facets.len() <= MOST_PANELS && facets.iter().all(|f| f.1.len() <= most);
+        fits.then_some(facets)
+    })
+}
+
+/// What is drawn of a motion.
+#[derive(Clone, Copy)]
+enum Ordinate {
+    Cost,
+    Residual,
+    Duration,
+}
+
+impl Ordinate {
+    fn of(self, point: &Point) -> f64 {
+        match self {
+            Self::Cost => point.cost,
+            Self::Residual => point.residual_deg,
+            Self::Duration => point.duration,
+        }
     }
 
-    fn settings(&self) -> [f64; 2] {
-        range(self.curves.iter().flatten().map(|values| values[0]), 0.0)
+    fn label(self) -> String {
+        match self {
+            Self::Cost => "best J".to_owned(),
+            Self::Residual => "residual [°]".to_owned(),
+            Self::Duration => duration(),
+        }
     }
+}
+
+/// How the motions of a sweep are drawn.
+struct Drawing<'a> {
+    points: &'a [Point],
+    swept: Swept,
+    /// What curves are called, in the order of their looks.
+    names: Vec<&'a str>,
 }
 
 /// The best motions over one setting: over the weight of the base residual and duration, over
-/// a limit the duration, over the number of terms or pieces the cost. None where the setting does not vary.
+/// a limit the duration, over the number of terms or pieces the cost. Motions that miss the goal are hollow; durations are
+/// joined where the goal is reached, and where it is not, a second panel has the residual. None where the setting does not
+/// vary, or other settings give too many combinations.
 ///
 /// Over jerk limits a reference tells what follows while jerk alone limits the motion, `t_f ∝ j̄^(−1/3)`. `bound` is the
 /// least cost whatever the number of terms, where it is known.
 pub(super) fn sweep(points: &[Point], swept: Swept, bound: Option<f64>) -> Option<Figure> {
-    let sweep = Sweep::of(points)?;
-    let is_positive = sweep.curves.iter().flatten().all(|values| values[0] > 0.0);
-    let x = match swept {
-        Swept::Terms => Axis::linear(&swept.label(), sweep.settings(), MARGIN).whole(),
-        _ if !is_positive => Axis::linear(&swept.label(), sweep.settings(), MARGIN),
-        _ => Axis::logarithmic(&swept.label(), sweep.settings(), MARGIN),
+    let combinations = combinations(points);
+    let facets = facets(&combinations).filter(|_| varies(points))?;
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in facets.iter().flat_map(|facet| &facet.1) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let drawing = Drawing { points, swept, names };
+    let ordinates: &[Ordinate] = match swept {
+        Swept::WeightBase => &[Ordinate::Residual, Ordinate::Duration],
+        Swept::Terms | Swept::Pieces => &[Ordinate::Cost],
+        _ if points.iter().any(Point::misses) => &[Ordinate::Duration, Ordinate::Residual],
+        _ => &[Ordinate::Duration],
     };
-    let panel = |mut lines: Vec<Line>, reference: Option<Line>, label: &str, is_log: bool| {
-        lines.splice(0..0, reference);
-        let values = range(lines.iter().flat_map(|line| &line.points).map(|[_, y]| *y), 1e-12);
-        let y = if is_log {
-            Axis::logarithmic(label, values, MARGIN)
-        } else {
-            Axis::linear(label, extent(&lines), MARGIN)
+    if let [facet] = &facets[..] {
+        let mut panels: Vec<Panel> = ordinates.iter().map(|o| drawing.panel(facet, *o)).collect();
+        let reference = match (swept, &combinations[..]) {
+            (Swept::Terms, [_]) => {
+                bound.map(|j| Line::level("free form, least found", j, drawing.settings()))
+            }
+            (Swept::JerkLimit, [only]) if !only.is_posed() => cube_root_law(&only.poses[0]),
+            _ => None,
         };
-        Panel::new(x.clone(), y, lines.into_iter().map(Mark::Line).collect())
-    };
-    let figure = match swept {
-        Swept::WeightBase => {
-            let panels = vec![
-                panel(sweep.lines(2), None, "residual [°]", false),
-                panel(sweep.lines(3), None, &duration(), false),
-            ];
-            Figure::column(panels, 30.0)
+        if let Some(line) = reference {
+            panels[0] = drawing.panel_with(facet, ordinates[0], Some(line));
         }
-        Swept::Terms => {
-            let level = |j| Line::level("free form, least found", j, sweep.settings());
-            let bound = bound.filter(|_| sweep.curves.len() == 1).map(level);
-            Figure::column(vec![panel(sweep.lines(1), bound, "best J", false)], 44.0)
-        }
-        Swept::Pieces => Figure::column(vec![panel(sweep.lines(1), None, "best J", false)], 44.0),
-        Swept::JerkLimit => {
-            let law = cube_root_law(&sweep);
-            Figure::column(vec![panel(sweep.lines(3), law, &duration(), true)], 44.0)
-        }
-        _ => Figure::column(vec![panel(sweep.lines(3), None, &duration(), true)], 44.0),
-    };
-    Some(figure)
+        let height = if panels.len() > 1 { 30.0 } else { 44.0 };
+        return Some(Figure::column(panels, height));
+    }
+    // Rows of panels for the one ordinate, then for the other; of many the hollow marks have to do.
+    let is_large = facets.len() > 2 * ACROSS && swept != Swept::WeightBase;
+    let ordinates = if is_large { &ordinates[..1] } else { ordinates };
+    let across = facets.len().min(ACROSS);
+    let mut panels: Vec<Panel> = Vec::new();
+    for ordinate in ordinates {
+        panels.extend(facets.iter().map(|facet| drawing.panel(facet, *ordinate)));
+        let rows = panels.len().next_multiple_of(across);
+        let nothing = || Axis::linear("", [0.0, 1.0], 0.0);
+        panels.resize_with(rows, || Panel::bare(nothing(), nothing(), Vec::new()));
+    }
+    Some(Figure { across, ..Figure::grid(panels) })
 }
 
-/// `t_f ∝ j̄^(−1/3)` from the lowest limit on, for one curve alone.
-fn cube_root_law(sweep: &Sweep) -> Option<Line> {
-    let [curve] = &sweep.curves[..] else { return None };
-    let (first, last) = (curve.first()?, curve.last()?);
+impl Drawing<'_> {
+    fn settings(&self) -> [f64; 2] {
+        range(self.points.iter().map(|point| point.setting), 0.0)
+    }
+
+    fn panel(&self, facet: &Facet<'_>, ordinate: Ordinate) -> Panel {
+        self.panel_with(facet, ordinate, None)
+    }
+
+    fn panel_with(
+        &self,
+        (title, combinations): &Facet<'_>,
+        ordinate: Ordinate,
+        reference: Option<Line>,
+    ) -> Panel {
+        let label = self.swept.label();
+        let is_positive = self.points.iter().all(|point| point.setting > 0.0);
+        let x = match self.swept {
+            Swept::Terms => Axis::linear(&label, self.settings(), MARGIN).whole(),
+            _ if !is_positive => Axis::linear(&label, self.settings(), MARGIN),
+            _ => Axis::logarithmic(&label, self.settings(), MARGIN),
+        };
+        let own = self.points.iter().map(|point| ordinate.of(point));
+        let lines = reference.iter().flat_map(|line| line.points.iter().map(|[_, y]| *y));
+        let [low, high] = range(own.chain(lines), f64::NEG_INFINITY);
+        let y = match ordinate {
+            // What searches leave is not drawn as if it were something.
+            Ordinate::Residual => {
+                Axis::linear(&ordinate.label(), [0.0, high.max(10.0 * AT_GOAL_DEG)], MARGIN)
+            }
+            Ordinate::Duration if self.swept != Swept::WeightBase && low > 0.0 => {
+                Axis::logarithmic(&ordinate.label(), [low, high], MARGIN)
+            }
+            _ => Axis::linear(&ordinate.label(), [low, high], MARGIN),
+        };
+        let mut marks: Vec<Mark> = reference.into_iter().map(Mark::Line).collect();
+        for (name, combination) in combinations {
+            marks.extend(self.curves(name, combination, ordinate));
+        }
+        if self.points.iter().any(Point::misses) {
+            let name = format!("goal missed by more than {AT_GOAL_DEG}°");
+            let stroke = Stroke { hollow: true, ..Stroke::plain(INK, 0.0) };
+            let stroke = stroke.with_marker(Marker::Circle);
+            marks.push(Mark::Points { name, stroke, points: Vec::new() });
+        }
+        Panel::new(x, y, marks).titled(title)
+    }
+
+    /// The curves of a combination; of several poses each thin, and the median of those that reach the goal throughout.
+    fn curves(&self, name: &str, own: &Combination<'_>, ordinate: Ordinate) -> Vec<Mark> {
+        let look = self.names.iter().position(|known| *known == name).unwrap_or_default();
+        let full = Stroke::of(look).with_marker(Marker::ALL[look % Marker::ALL.len()]);
+        let pale = mix(full.colour, PAPER, 0.4);
+        let stroke = if own.is_posed() { Stroke::plain(pale, 0.12) } else { full };
+        let joins = |a: &Point, b: &Point| match (ordinate, self.swept) {
+            (Ordinate::Cost, _) | (_, Swept::WeightBase) => true,
+            (Ordinate::Residual, _) => false,
+            (Ordinate::Duration, _) => !a.misses() && !b.misses(),
+        };
+        let place = |point: &Point| [point.setting, ordinate.of(point)];
+        let mut marks = Vec::new();
+        let mut told = name;
+        for pose in &own.poses {
+            for piece in pose.chunk_by(|a, b| joins(a, b)) {
+                let points = piece.iter().map(|point| place(point)).collect();
+                let name = if own.is_posed() { "" } else { std::mem::take(&mut told) };
+                marks.push(Mark::Line(Line::new(name, stroke, points)));
+            }
+            let missed = pose.iter().filter(|point| point.misses());
+            let points = missed.map(|point| place(point)).collect();
+            let stroke = Stroke { hollow: true, width: 0.0, ..full };
+            let stroke =
+                Stroke { colour: if own.is_posed() { pale } else { full.colour }, ..stroke };
+            marks.push(Mark::Points { name: String::new(), stroke, points });
+        }
+        if own.is_posed() {
+            marks.push(Mark::Note("thin: single poses".to_owned()));
+            marks.extend(median_line(name, own, ordinate, full));
+        }
+        marks
+    }
+}
+
+/// The median over the poses that reach the goal at every value of the setting; of costs over all.
+fn median_line(
+    name: &str,
+    own: &Combination<'_>,
+    ordinate: Ordinate,
+    stroke: Stroke,
+) -> Option<Mark> {
+    let most = own.poses.iter().map(Vec::len).max()?;
+    let counts = |pose: &&Vec<&Point>| {
+        let compares = matches!(ordinate, Ordinate::Cost | Ordinate::Residual);
+        pose.len() == most && (compares || !pose.iter().any(|point| point.misses()))
+    };
+    let poses: Vec<_> = own.poses.iter().filter(counts).collect();
+    let first = poses.first()?;
+    let points = first.iter().enumerate().map(|(i, point)| {
+        let values = poses.iter().map(|pose| ordinate.of(pose[i])).collect();
+        [point.setting, median(values)]
+    });
+    let throughout = match ordinate {
+        Ordinate::Duration => " that reach the goal throughout",
+        _ => "",
+    };
+    let before = if name.is_empty() { String::new() } else { format!("{name}: ") };
+    let told = format!("{before}median of {}{throughout}", plural(poses.len(), "pose"));
+    Some(Mark::Line(Line::new(&told, stroke, points.collect())))
+}
+
+/// `t_f ∝ j̄^(−1/3)` over the motions that reach the goal, from the lowest limit on.
+fn cube_root_law(curve: &[&Point]) -> Option<Line> {
+    let mut reached = curve.iter().filter(|point| !point.misses());
+    let (first, last) = (reached.next()?, reached.next_back()?);
     let law = format!("{T_F} as the jerk limit to the power −1/3");
-    let at = |jerk: f64| [jerk, first[3] * (jerk / first[0]).powf(-1.0 / 3.0)];
-    Some(Line::new(&law, Stroke::reference(), vec![at(first[0]), at(last[0])]))
+    let at = |jerk: f64| [jerk, first.duration * (jerk / first.setting).powf(-1.0 / 3.0)];
+    Some(Line::new(&law, Stroke::reference(), vec![at(first.setting), at(last.setting)]))
 }
 
 /// The label of an axis of durations.
