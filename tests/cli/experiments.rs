@@ -280,7 +280,7 @@ fn reports_of_few_runs_and_odd_labels_are_whole() {
     let folder = Folder::new().with("part.toml", text);
     run(&folder, &["part.toml", "--out", "out", "--shard", "0/6"]);
     let report = |expected: &str| {
-        let output = folder.run(&["report", "out"]);
+        let output = folder.run(&["report", "out", "--replace"]);
         assert!(output.status.success(), "{}", stderr(&output));
         assert!(stdout(&output).contains(expected), "{}", stdout(&output));
         let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();

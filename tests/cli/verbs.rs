@@ -239,6 +239,29 @@ fn plan_takes_another_robot() {
     }
 }
 
+/// A base of 90 t: ending a degree nearer costs more time than it gains. That is said, and the weight that is advised brings it there.
+#[test]
+fn a_weight_that_is_too_small_is_told() {
+    let robot =
+        include_str!("../../src/robot/xiao2023.toml").replacen("mass = 600", "mass = 90000", 1);
+    let inertia = "xx = 75, yy = 74, zz = 74, xy = 0.25, xz = 0.32, yz = 0.19";
+    let robot = robot.replacen(inertia, "xx = 11250, yy = 11100, zz = 11100", 1);
+    let task = "[task]\nrobot = 'heavy.toml'\n\
+        start = { joints_deg = [10, 30, 45, -20, -25, 40], base_zyx_deg = [0.5, 0, 0] }\n\
+        goal = { joints_deg = [40, 60, 90, -10, -30, 60], base_zyx_deg = [0, 0, 0] }\n\
+        limits = { rate_deg_s = 60, acceleration_deg_s2 = 70, jerk_deg_s3 = 80 }\n";
+    let folder = Folder::new()
+        .with("heavy.toml", robot)
+        .with("task.toml", task)
+        .with("weighed.toml", format!("{task}weights.base = 0.9999\n"));
+    let output = folder.run(&["plan", "task.toml", "--family", "sine-polynomial"]);
+    assert!(stdout(&output).contains("not stated     weights.base"), "{}", stdout(&output));
+    assert!(stderr(&output).contains("A `weights.base` above 0.9"), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("more terms"), "{}", stderr(&output));
+    let plan = json(&folder, &["plan", "weighed.toml", "--family", "sine-polynomial", "--json"]);
+    assert_eq!((&plan["reached"], &plan["inherited"]), (&true.into(), &serde_json::json!([])));
+}
+
 #[test]
 fn motions_are_written() {
     let folder = Folder::new();
