@@ -21,6 +21,7 @@ const FONT: &str = "Noto Sans";
 const MARKER: f64 = 0.62;
 /// Size of a lowered or raised text, as a share of the text's: journals want 6 points at least.
 const SMALL: f64 = 0.8;
+const _: () = assert!(SMALL * TEXT_PT >= 6.0);
 /// Most letters of a text that are drawn; more fit no figure.
 const MOST_LETTERS: usize = 400;
 /// The share of a text cut in the middle that is its end, where settings stand.

@@ -43,7 +43,7 @@ pub(super) fn names(labels: &[&str]) -> Names {
         told.names.push(format!("{head} {}", values.join(" ")));
         if noted.insert(*head) {
             let keys = keys(settings).join(", ");
-            told.note += &format!(" Behind {head} stand, in this order, {keys}.");
+            told.note.extend([" Behind ", head, " stand, in this order, ", &keys, "."]);
         }
     }
     let distinct: HashSet<&String> = told.names.iter().collect();

@@ -43,7 +43,8 @@ pub fn write(plan: &Plan, store: &Store, folder: &Path) -> Result<Report, Report
     let analysis = Analysis::new(plan, &runs, &targets);
     let summary = render(&summary(plan, &runs, &targets)?)?;
     let own = analysis.exhibits();
-    let findings = analysis.findings(&own);
+    let mut findings = analysis.findings(&own);
+    findings.extend(plot::left_out(plan));
     let mut tables = analysis.tables(own.tables)?;
     let mut charts = plot::charts(plan, &tables, runs.len(), own.leading_charts)?;
     charts.extend(own.charts);

@@ -13,7 +13,7 @@ use super::snapshots::snapshots;
 use super::sweeps::{Point, Swept, sweep as sweep_chart};
 use crate::analysis::handmade::{answer, findings, plan_on, runs};
 use crate::analysis::{Analysis, targets};
-use crate::exhibit::Finding;
+use crate::exhibit::{Exhibits, Finding};
 use crate::experiment::{
     Experiment, Folder, Options, Plan, Progress, Record, Registry, Run, RunSpec, load,
 };
@@ -184,20 +184,52 @@ fn what_is_beaten_is_not_what_is_reached() {
     assert!(good.contains(part), "{good}");
 }
 
-/// Every one of 30 motions can be chosen on the page.
-#[test]
-fn motions_of_many_instances_are_all_shown() {
+/// What is shown and said of a sweep whose runs all found the same motion.
+fn exhibited(sweep: &str) -> (Exhibits, Vec<Finding>) {
     let field = "[[optimiser]]\nscp = {}\n";
     let head = "seeds = 1\nbudget = { evaluations = 9 }\n";
     let known = best_known(&plan(&format!("{head}{field}"))).remove(0);
-    let limits: Vec<String> = (0..30).map(|i| (50 + i).to_string()).collect();
-    let swept = format!("[sweep]\njerk_limit_deg_s3 = [{}]\n", limits.join(", "));
-    let plan = plan(&format!("{head}{swept}{field}"));
+    let plan = plan(&format!("{head}[sweep]\n{sweep}\n{field}"));
     let as_known = |run: Run| Run { measures: known.measures.clone(), x: known.x.clone(), ..run };
     let runs: Vec<Run> = runs(&plan, |_| vec![(1, 1.0)]).into_iter().map(as_known).collect();
     let targets = targets(&plan, &runs);
-    let exhibits = Analysis::new(&plan, &runs, &targets).exhibits();
+    let analysis = Analysis::new(&plan, &runs, &targets);
+    let exhibits = analysis.exhibits();
+    let findings = analysis.findings(&exhibits);
+    (exhibits, findings)
+}
+
+fn list(count: u32) -> String {
+    format!("[{}]", (0..count).map(|i| (50 + i).to_string()).collect::<Vec<_>>().join(", "))
+}
+
+/// Every one of 30 motions can be chosen on the page.
+#[test]
+fn motions_of_many_instances_are_all_shown() {
+    let (exhibits, _) = exhibited(&format!("jerk_limit_deg_s3 = {}", list(30)));
     assert_eq!((exhibits.scenes.len(), exhibits.scenes_found), (30, 30));
+}
+
+/// Of two jerk limits under 25 limits on rates the one chart would have 25 panels, the other has one with two curves.
+#[test]
+fn charts_that_are_left_out_are_told() {
+    let (exhibits, told) =
+        exhibited(&format!("jerk_limit_deg_s3 = [80, 90]\nrate_limit_deg_s = {}", list(25)));
+    let names: Vec<&str> = exhibits.leading_charts.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["rate-sweep"]);
+    assert_eq!(
+        answer(&told, "Which charts are left out?"),
+        "jerk-sweep: other settings have more than 24 combinations."
+    );
+}
+
+/// A group of poses is no reason to leave the chart of a sweep out.
+#[test]
+fn sweeps_over_poses_are_drawn() {
+    let (exhibits, _) =
+        exhibited("jerk_limit_deg_s3 = [80, 90]\nrandom_poses = { count = 12, seed = 1 }");
+    let names: Vec<&str> = exhibits.leading_charts.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["jerk-sweep"]);
 }
 
 /// Of three instances one is not tried yet.
@@ -257,7 +289,9 @@ fn poses() -> Vec<Point> {
     let pose = |k: u32| {
         let mut points = missed(&[], &k.to_string(), 1.0 + 0.1 * f64::from(k));
         if k < 3 {
-            points.iter_mut().for_each(|point| point.residual_deg = 0.0);
+            for point in &mut points {
+                point.residual_deg = 0.0;
+            }
         }
         points
     };
@@ -322,6 +356,21 @@ fn front() -> Figure {
         is_efficient,
     };
     pareto(&motions.map(trade)).unwrap()
+}
+
+/// More fronts than a panel can hold have panels of their own.
+#[test]
+fn many_fronts_are_drawn() {
+    let trade = |(i, weight): (usize, f64)| Trade {
+        others: format!("jerk ≤ {} °/s³", 20 * (i + 1)),
+        weight,
+        duration: 5.0 + weight,
+        residual_deg: 20.0 - 20.0 * weight,
+        is_efficient: true,
+    };
+    let trades: Vec<Trade> =
+        (0..10).flat_map(|i| [0.1, 0.9].map(|weight| (i, weight))).map(trade).collect();
+    assert_eq!(pareto(&trades).unwrap().panels.len(), 10);
 }
 
 fn motion() -> Motion {
