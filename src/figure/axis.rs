@@ -1,7 +1,7 @@
 //! An axis: its range, its scale, and ticks that have room.
 
-use super::sheet::{fitted_apart, raised, text_width};
 use super::style::TEXT_PT;
+use super::text::{fitted_apart, raised, text_width};
 
 /// An axis; a logarithmic one holds decimal logarithms.
 #[derive(Debug, Clone)]

@@ -9,8 +9,9 @@ use crate::analysis::statistics::quantile;
 use crate::figure::axis::Axis;
 use crate::figure::marks::Mark;
 use crate::figure::panel::{MARGIN, Panel};
-use crate::figure::sheet::{Anchor, text_width};
+use crate::figure::sheet::Anchor;
 use crate::figure::style::{Stroke, TEXT_PT, Width};
+use crate::figure::text::text_width;
 use crate::figure::{Figure, FigureError};
 
 /// Most runs of a box that are drawn one by one, and where there is one optimiser alone.

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use super::names::names;
 use crate::experiment::{Entrant, Plan};
-use crate::figure::sheet::printable;
 use crate::figure::style::{COLOURS, DASHES, INK, Marker, OUTSIDE_COLOURS, PAPER, Stroke, mix};
+use crate::figure::text::printable;
 
 /// The kinds of optimisers in the order of their colours and markers.
 const KINDS: [&str; COLOURS.len()] = [

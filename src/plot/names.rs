@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use crate::figure::axis::LONGEST_NAME;
-use crate::figure::sheet::text_width;
 use crate::figure::style::TEXT_PT;
+use crate::figure::text::text_width;
 
 /// Names by label, and what has to be known to read them.
 #[derive(Debug, Clone, Default, PartialEq)]
