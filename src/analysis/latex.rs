@@ -1,5 +1,7 @@
 //! Tables for LaTeX.
 
+use std::fmt::Write;
+
 use polars::prelude::*;
 
 use super::format::{cell, cells, shown};
@@ -11,6 +13,8 @@ const PAGE: f64 = 505.0;
 const GAP: f64 = 6.0;
 /// Width of a letter at `\\footnotesize` \[pt\], a little more than a digit's.
 const LETTER: f64 = 4.3;
+/// Texts wider than this are broken \[pt\].
+const WIDEST: f64 = 150.0;
 /// Letters of a heading that stay in one line.
 const HEADING: usize = 9;
 
@@ -20,6 +24,8 @@ struct Written {
     heading: Vec<String>,
     cells: Vec<String>,
     alignment: char,
+    /// Whether its cells are broken into lines.
+    is_broken: bool,
     /// \[pt\]
     width: f64,
 }
@@ -39,7 +45,10 @@ pub fn latex(frame: &DataFrame, name: &str, caption: &str) -> PolarsResult<Strin
         let heading = broken(column.name(), widest.max(HEADING));
         let letters = heading.iter().map(|line| line.chars().count()).fold(widest, usize::max);
         let alignment = if column.dtype().is_string() { 'l' } else { 'r' };
-        Written { heading, cells, alignment, width: LETTER * letters as f64 + GAP }
+        let width = LETTER * letters as f64;
+        let is_broken = alignment == 'l' && width > WIDEST;
+        let width = GAP + if is_broken { WIDEST } else { width };
+        Written { heading, cells, alignment, is_broken, width }
     };
     let written: Vec<Written> = columns.iter().enumerate().map(column).collect();
     let parts = parts(&written);
@@ -76,7 +85,8 @@ fn long(parts: &[Vec<&Written>], caption: &str) -> String {
     for (i, part) in parts.iter().enumerate() {
         let caption = if i == 0 { format!("{caption}\\\\\n") } else { String::new() };
         let header = header(part);
-        text += &format!(
+        let _ = write!(
+            text,
             "\\begin{{longtable}}{{{}}}\n{caption}\\toprule\n{header}\\midrule\n\\endfirsthead\n\
              \\toprule\n{header}\\midrule\n\\endhead\n\\bottomrule\n\\endfoot\n{}\\end{{longtable}}\n",
             alignments(part),
@@ -104,7 +114,10 @@ fn parts(columns: &[Written]) -> Vec<Vec<&Written>> {
 }
 
 fn alignments(part: &[&Written]) -> String {
-    part.iter().map(|column| column.alignment).collect()
+    let of = |column: &&Written| {
+        if column.is_broken { format!("p{{{WIDEST}pt}}") } else { column.alignment.to_string() }
+    };
+    part.iter().map(of).collect()
 }
 
 fn header(part: &[&Written]) -> String {
@@ -124,11 +137,16 @@ fn header(part: &[&Written]) -> String {
 
 fn body(part: &[&Written]) -> String {
     let count = part.first().map_or(0, |column| column.cells.len());
-    (0..count).map(|i| row(part.iter().map(|column| in_latex(&column.cells[i])))).collect()
+    let cell = |column: &Written, i: usize| {
+        let ragged = if column.is_broken { "\\raggedright " } else { "" };
+        format!("{ragged}{}", in_latex(&column.cells[i]))
+    };
+    (0..count).map(|i| row(part.iter().map(|column| cell(column, i)))).collect()
 }
 
 fn row(cells: impl Iterator<Item = String>) -> String {
-    format!("{} \\\\\n", cells.collect::<Vec<_>>().join(" & "))
+    // Ragged cells have a `\\` of their own.
+    format!("{} \\tabularnewline\n", cells.collect::<Vec<_>>().join(" & "))
 }
 
 /// A heading in lines of so many letters, longer where a word is.
@@ -155,6 +173,8 @@ fn in_latex(text: &str) -> String {
             '\\' => latex += "\\textbackslash{}",
             '~' => latex += "\\textasciitilde{}",
             '^' => latex += "\\textasciicircum{}",
+            // Behind an end of line it would be a length.
+            '[' => latex += "{[}",
             '<' | '>' | '|' => latex.extend(['$', character, '$']),
             '–' => latex += "--",
             '…' => latex += "\\ldots{}",
@@ -164,7 +184,7 @@ fn in_latex(text: &str) -> String {
             '\u{a0}' => latex.push('~'),
             other if other.is_control() => latex.push(' '),
             other => match symbol(other) {
-                Some(symbol) => latex += &format!("${symbol}$"),
+                Some(symbol) => latex.extend(["$", symbol, "$"]),
                 None => latex.push(other),
             },
         }
@@ -222,6 +242,7 @@ mod tests {
             in_latex("10⁻⁸ ≤ 5_000 % of a\u{7}<b>"),
             "10$^{-8}$ $\\leq$ 5\\_000 \\% of a $<$b$>$"
         );
+        assert_eq!(in_latex("t_f [s]"), "t\\_f {[}s]");
         assert_eq!(in_latex("1.2 °/s² – χ²"), "1.2 $^\\circ$/s$^{2}$ -- $\\chi$$^{2}$");
     }
 
@@ -246,6 +267,18 @@ mod tests {
         assert!(text.contains(heading), "{text}");
         assert!(text.trim_end().ends_with("\\end{table*}"));
         assert!(!text.contains("longtable"));
+    }
+
+    #[test]
+    fn long_texts_are_broken() {
+        let labels = ["a label of some length ".repeat(5), "b".to_owned()];
+        let frame = df!("first" => &labels, "second" => &labels, "n" => [1.0, 2.0]).unwrap();
+        let text = latex(&frame, "pairs", "").unwrap();
+        assert!(text.contains("\\begin{tabular}{p{150pt}p{150pt}r}"), "{text}");
+        assert!(
+            text.contains("\\raggedright b & \\raggedright b & 2.0000 \\tabularnewline"),
+            "{text}"
+        );
     }
 
     #[test]

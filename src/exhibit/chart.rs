@@ -7,8 +7,8 @@ use crate::figure::Figure;
 use crate::figure::axis::Axis;
 use crate::figure::marks::{Line, Mark};
 use crate::figure::panel::{MARGIN, Panel, extent, range};
-use crate::figure::sheet::printable;
 use crate::figure::style::Stroke;
+use crate::figure::text::printable;
 
 /// A figure with what goes with it in a report.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! An axis: its range, its scale, and ticks that have room.
 
-use super::sheet::{fitted_apart, raised, text_width};
 use super::style::TEXT_PT;
+use super::text::{fitted_apart, raised, text_width};
 
 /// An axis; a logarithmic one holds decimal logarithms.
 #[derive(Debug, Clone)]
@@ -48,7 +48,7 @@ impl Axis {
     /// share of its width.
     pub(crate) fn logarithmic(label: &str, [low, high]: [f64; 2], more: f64) -> Self {
         let [low, high] = [low, high].map(|end| end.clamp(LARGEST.recip(), LARGEST));
-        let [low, high] = if high > low { [low, high] } else { [low / 2.0, low * 2.0] };
+        let [low, high] = if high > low { [low, high] } else { [low / 3.0, low * 3.0] };
         let (low, high) = (low.log10(), high.log10());
         let more = more * (high - low);
         let range = [low - more, high + more];

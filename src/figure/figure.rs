@@ -8,8 +8,9 @@ use svg2pdf::{ConversionOptions, PageOptions};
 
 use super::error::FigureError;
 use super::panel::{Frame, LINE, Panel};
-use super::sheet::{Anchor, Sheet, fitted_apart, text_width};
+use super::sheet::{Anchor, Sheet};
 use super::style::{Stroke, TEXT_PT, Width};
+use super::text::{fitted_apart, text_width};
 use crate::output::{create_folder, write_file};
 
 /// Panels in rows, under one legend.

@@ -10,6 +10,7 @@ pub(crate) mod sheet;
 #[cfg(test)]
 pub(crate) mod stored_pictures;
 pub(crate) mod style;
+pub(crate) mod text;
 
 pub(crate) use error::FigureError;
 pub(crate) use figure::Figure;

@@ -3,8 +3,9 @@
 use super::axis::Axis;
 use super::error::FigureError;
 use super::marks::{Line, Mark, grid};
-use super::sheet::{Anchor, Place, Sheet, text_width};
+use super::sheet::{Anchor, Place, Sheet};
 use super::style::{INK, Stroke, TEXT_PT};
+use super::text::text_width;
 
 /// Height of a line of text \[mm\].
 pub(crate) const LINE: f64 = 3.6;

@@ -1,13 +1,16 @@
 //! Every chart that an experiment's tables give.
 
+use std::collections::HashSet;
+
 use polars::prelude::DataFrame;
 
+use super::curves::MOST_PANELS;
 use super::looks::Looks;
 use super::{
     convergence, critical_difference, dimensions, effect_sizes, final_costs, running_times,
 };
 use crate::analysis::ALPHA;
-use crate::exhibit::{Chart, Table};
+use crate::exhibit::{Chart, Finding, Table};
 use crate::experiment::Plan;
 use crate::figure::{Figure, FigureError};
 
@@ -37,6 +40,18 @@ struct Maker<'a> {
     /// What every caption of a comparison ends with.
     notes: String,
     charts: Vec<Chart>,
+}
+
+/// What is said where there are too many groups of instances for charts by group.
+pub(crate) fn left_out(plan: &Plan) -> Option<Finding> {
+    let groups: HashSet<&str> = plan.instances.iter().map(|i| i.group.as_str()).collect();
+    let told = format!(
+        "Those of convergence, final costs and expected running times, which have a panel for each group of instances: \
+         there are {}, and {MOST_PANELS} at most are drawn. Their tables have all.",
+        groups.len()
+    );
+    let question = "Which charts by group are left out?";
+    (groups.len() > MOST_PANELS).then(|| Finding::new(question, told))
 }
 
 /// Every chart that the tables of an experiment with so many stored runs give. Those of more than 24

@@ -8,8 +8,9 @@ use crate::analysis::ALPHA;
 use crate::figure::axis::{Axis, LONGEST_NAME};
 use crate::figure::marks::{Line, Mark};
 use crate::figure::panel::Panel;
-use crate::figure::sheet::{Anchor, fitted_apart, text_width};
+use crate::figure::sheet::Anchor;
 use crate::figure::style::{INK, Stroke, TEXT_PT, Width};
+use crate::figure::text::{fitted_apart, text_width};
 use crate::figure::{Figure, FigureError};
 
 /// Distance between lines of labels, and between bars \[mm\].

@@ -3,7 +3,7 @@
 use polars::prelude::*;
 
 use super::looks::Looks;
-use crate::figure::sheet::printable;
+use crate::figure::text::printable;
 
 /// One curve.
 #[derive(Debug, Clone, Default)]

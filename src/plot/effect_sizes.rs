@@ -9,8 +9,8 @@ use crate::analysis::ALPHA;
 use crate::figure::axis::{Axis, LONGEST_NAME};
 use crate::figure::marks::Mark;
 use crate::figure::panel::Panel;
-use crate::figure::sheet::{fitted_apart, text_width};
 use crate::figure::style::{COLOURS, GRID, PAPER, TEXT_PT, Width, mix};
+use crate::figure::text::{fitted_apart, text_width};
 use crate::figure::{Figure, FigureError};
 
 /// Height of a line \[mm\].

@@ -9,8 +9,9 @@ use crate::analysis::statistics::quantile;
 use crate::figure::axis::Axis;
 use crate::figure::marks::Mark;
 use crate::figure::panel::{MARGIN, Panel};
-use crate::figure::sheet::{Anchor, text_width};
+use crate::figure::sheet::Anchor;
 use crate::figure::style::{Stroke, TEXT_PT, Width};
+use crate::figure::text::text_width;
 use crate::figure::{Figure, FigureError};
 
 /// Most runs of a box that are drawn one by one, and where there is one optimiser alone.
@@ -25,9 +26,9 @@ const ROW: f64 = 4.6;
 const ROW_POINTS: f64 = 5.6;
 const ROW_ALONE: f64 = 9.0;
 /// Where a box and its single runs stand, as shares of a line's height.
-const BOX_ABOVE: f64 = 0.14;
-const POINTS_BELOW: f64 = 0.33;
-const SCATTER: f64 = 0.06;
+const BOX_ABOVE: f64 = 0.17;
+const POINTS_BELOW: f64 = 0.31;
+const SCATTER: f64 = 0.05;
 /// Room for the number of failed runs, as a share of the axis.
 const FOR_FAILURES: f64 = 0.45;
 /// Names of lines longer than this \[mm\] take the page's width.

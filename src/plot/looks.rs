@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use super::names::names;
 use crate::experiment::{Entrant, Plan};
-use crate::figure::sheet::printable;
 use crate::figure::style::{COLOURS, DASHES, INK, Marker, OUTSIDE_COLOURS, PAPER, Stroke, mix};
+use crate::figure::text::printable;
 
 /// The kinds of optimisers in the order of their colours and markers.
 const KINDS: [&str; COLOURS.len()] = [
@@ -27,7 +27,7 @@ const MOST_IN_A_PANEL: usize = 8;
 /// How the optimisers of a field look, by label: colour tells the kind, dashes the formulation, the
 /// marker the kind or, of a hybrid, what searches first. Kinds of other programs have colours that none
 /// of this program's has. Of several that share all this, every other one has hollow markers, and later
-/// ones lighter and darker colours.
+/// ones lighter and darker colours; where the whole field is of one kind, colours and markers of their own.
 #[derive(Debug, Clone)]
 pub(super) struct Looks {
     /// Label, kind and stroke in the field's order.
@@ -77,6 +77,7 @@ impl Looks {
 
     fn with_spaces(field: &[Entrant], spaces: &[String]) -> Self {
         let outsiders = outsiders(field);
+        let is_alone = field.windows(2).all(|pair| pair[0].kind == pair[1].kind);
         let mut seen = HashMap::new();
         let look = |entrant: &Entrant| {
             let asked = entrant.formulation.as_ref();
@@ -84,8 +85,9 @@ impl Looks {
             let space = space.unwrap_or(0);
             let alike = (entrant.kind.clone(), entrant.search.clone(), space);
             let twins = seen.entry(alike).or_insert(0);
-            let (_, colour) = kind_of(&entrant.kind, &outsiders);
+            let (kind, colour) = kind_of(&entrant.kind, &outsiders);
             let colour = match *twins / 2 % 3 {
+                _ if is_alone => COLOURS[(kind + *twins) % COLOURS.len()],
                 0 => colour,
                 1 => mix(colour, PAPER, 0.4),
                 _ => mix(colour, INK, 0.5),
@@ -94,7 +96,8 @@ impl Looks {
             let plain = Stroke { dashes, hollow: *twins % 2 == 1, ..Stroke::plain(colour, 0.32) };
             let (place, _) = kind_of(entrant.search.as_ref().unwrap_or(&entrant.kind), &outsiders);
             // Six of a kind have its own marker, the next six another.
-            let stroke = plain.with_marker(Marker::ALL[(place + *twins / 6) % Marker::ALL.len()]);
+            let further = if is_alone { *twins } else { *twins / 6 };
+            let stroke = plain.with_marker(Marker::ALL[(place + further) % Marker::ALL.len()]);
             *twins += 1;
             (printable(&entrant.label), printable(&entrant.kind), stroke)
         };

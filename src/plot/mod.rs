@@ -14,4 +14,4 @@ mod running_times;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use charts::{NAMES, charts};
+pub(crate) use charts::{NAMES, charts, left_out};

@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use crate::figure::axis::LONGEST_NAME;
-use crate::figure::sheet::text_width;
 use crate::figure::style::TEXT_PT;
+use crate::figure::text::text_width;
 
 /// Names by label, and what has to be known to read them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -43,7 +43,7 @@ pub(super) fn names(labels: &[&str]) -> Names {
         told.names.push(format!("{head} {}", values.join(" ")));
         if noted.insert(*head) {
             let keys = keys(settings).join(", ");
-            told.note += &format!(" Behind {head} stand, in this order, {keys}.");
+            told.note.extend([" Behind ", head, " stand, in this order, ", &keys, "."]);
         }
     }
     let distinct: HashSet<&String> = told.names.iter().collect();

@@ -1,9 +1,11 @@
 //! Every chart drawn from fixed data.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use polars::prelude::*;
 
+use super::charts::left_out;
 use super::convergence::convergence;
 use super::critical_difference::critical_difference;
 use super::curves::curves;
@@ -12,9 +14,11 @@ use super::effect_sizes::effect_sizes;
 use super::final_costs::final_costs;
 use super::looks::Looks;
 use super::running_times::{expected_running_time, profiles, running_time_distribution};
-use crate::experiment::Entrant;
+use crate::analysis::handmade::plan_on;
+use crate::experiment::{Entrant, Registry};
 use crate::figure::Figure;
 use crate::figure::stored_pictures::{check, texts};
+use crate::functions::Functions;
 use crate::optimiser::{Hybrid, Settings};
 
 /// A field of all kinds, with labels as long as they get.
@@ -345,6 +349,24 @@ fn optimisers_can_be_told_apart() {
             }
         }
     }
+}
+
+/// 25 dimensions of a function are 25 groups.
+#[test]
+fn charts_left_out_for_their_groups_are_told() {
+    let of = |count: u32| {
+        let dimensions: Vec<String> = (2..2 + count).map(|d| d.to_string()).collect();
+        left_out(&plan_on(
+            &format!(
+                "seeds = 1\nbudget = {{ evaluations = 9 }}\n[functions]\nname = ['sphere']\n\
+                 dimension = [{}]\n[[optimiser]]\nde = {{}}\n",
+                dimensions.join(", ")
+            ),
+            &Registry::new().with(Arc::new(Functions)),
+        ))
+    };
+    assert_eq!(of(24), None);
+    assert!(of(25).unwrap().answer.contains("there are 25, and 24 at most are drawn"));
 }
 
 #[test]

@@ -82,7 +82,8 @@ pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, 
     let analysis = Analysis::new(plan, &runs, &targets);
     let summary = render(&summary(plan, &runs, &targets)?)?;
     let own = analysis.exhibits();
-    let findings = analysis.findings(&own);
+    let mut findings = analysis.findings(&own);
+    findings.extend(plot::left_out(plan));
     let path = folder.join(PAGE);
     if kept.is_none() {
         let mut tables = analysis.tables(own.tables)?;

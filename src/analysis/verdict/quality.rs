@@ -47,13 +47,14 @@ fn solved(analysis: &Analysis<'_>) -> Option<String> {
     let (whole, open): (Vec<usize>, Vec<usize>) =
         known.iter().partition(|&&i| tried.iter().all(|flags| flags[i]));
     let unsolved = whole.iter().filter(|&&i| !solved.iter().any(|flags| flags[i])).count();
-    let mut rest = match unsolved {
+    let unsolved = match unsolved {
         0 => String::new(),
         n => format!(" Nobody solved {n} of them."),
     };
-    if !open.is_empty() {
-        rest += &format!(" Not all optimisers have tried {} yet.", plural(open.len(), "instance"));
-    }
+    let open = match open.len() {
+        0 => String::new(),
+        n => format!(" Not all optimisers have tried {} yet.", plural(n, "instance")),
+    };
     let known = plural(known.len(), "instance");
-    Some(format!("Of {known}, solved to 10⁻⁸ in any run: {}.{rest}", list(&told)))
+    Some(format!("Of {known}, solved to 10⁻⁸ in any run: {}.{unsolved}{open}", list(&told)))
 }

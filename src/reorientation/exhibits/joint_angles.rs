@@ -4,8 +4,8 @@ use crate::figure::Figure;
 use crate::figure::axis::Axis;
 use crate::figure::marks::{Line, Mark};
 use crate::figure::panel::{MARGIN, Panel, extent};
-use crate::figure::sheet::printable;
 use crate::figure::style::Stroke;
+use crate::figure::text::printable;
 use crate::reorientation::motion::Motion;
 
 /// Joint angles over time.

@@ -13,6 +13,8 @@ mod quality;
 mod scene;
 mod snapshots;
 mod sweep_finding;
+#[cfg(test)]
+mod sweep_tests;
 mod sweeps;
 #[cfg(test)]
 mod tests;

@@ -10,16 +10,16 @@ use super::derivatives::derivatives;
 use super::joint_angles::joint_angles;
 use super::pareto::{Trade, pareto};
 use super::snapshots::snapshots;
-use super::sweeps::{Point, Swept, sweep as sweep_chart};
+use super::sweep_tests::{missed, poses, swept, two_settings};
+use super::sweeps::{Swept, sweep as sweep_chart};
 use crate::analysis::handmade::{answer, findings, plan_on, runs};
 use crate::analysis::{Analysis, targets};
-use crate::exhibit::Finding;
+use crate::exhibit::{Exhibits, Finding};
 use crate::experiment::{
     Experiment, Folder, Options, Plan, Progress, Record, Registry, Run, RunSpec, load,
 };
 use crate::figure::Figure;
-use crate::figure::marks::Mark;
-use crate::figure::stored_pictures::{check, texts};
+use crate::figure::stored_pictures::check;
 use crate::functions::Functions;
 use crate::lanes::Width;
 use crate::reorientation::best_known::BestKnown;
@@ -184,20 +184,52 @@ fn what_is_beaten_is_not_what_is_reached() {
     assert!(good.contains(part), "{good}");
 }
 
-/// Every one of 30 motions can be chosen on the page.
-#[test]
-fn motions_of_many_instances_are_all_shown() {
+/// What is shown and said of a sweep whose runs all found the same motion.
+fn exhibited(sweep: &str) -> (Exhibits, Vec<Finding>) {
     let field = "[[optimiser]]\nscp = {}\n";
     let head = "seeds = 1\nbudget = { evaluations = 9 }\n";
     let known = best_known(&plan(&format!("{head}{field}"))).remove(0);
-    let limits: Vec<String> = (0..30).map(|i| (50 + i).to_string()).collect();
-    let swept = format!("[sweep]\njerk_limit_deg_s3 = [{}]\n", limits.join(", "));
-    let plan = plan(&format!("{head}{swept}{field}"));
+    let plan = plan(&format!("{head}[sweep]\n{sweep}\n{field}"));
     let as_known = |run: Run| Run { measures: known.measures.clone(), x: known.x.clone(), ..run };
     let runs: Vec<Run> = runs(&plan, |_| vec![(1, 1.0)]).into_iter().map(as_known).collect();
     let targets = targets(&plan, &runs);
-    let exhibits = Analysis::new(&plan, &runs, &targets).exhibits();
+    let analysis = Analysis::new(&plan, &runs, &targets);
+    let exhibits = analysis.exhibits();
+    let findings = analysis.findings(&exhibits);
+    (exhibits, findings)
+}
+
+fn list(count: u32) -> String {
+    format!("[{}]", (0..count).map(|i| (50 + i).to_string()).collect::<Vec<_>>().join(", "))
+}
+
+/// Every one of 30 motions can be chosen on the page.
+#[test]
+fn motions_of_many_instances_are_all_shown() {
+    let (exhibits, _) = exhibited(&format!("jerk_limit_deg_s3 = {}", list(30)));
     assert_eq!((exhibits.scenes.len(), exhibits.scenes_found), (30, 30));
+}
+
+/// Of two jerk limits under 25 limits on rates the one chart would have 25 panels, the other has one with two curves.
+#[test]
+fn charts_that_are_left_out_are_told() {
+    let (exhibits, told) =
+        exhibited(&format!("jerk_limit_deg_s3 = [80, 90]\nrate_limit_deg_s = {}", list(25)));
+    let names: Vec<&str> = exhibits.leading_charts.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["rate-sweep"]);
+    assert_eq!(
+        answer(&told, "Which charts are left out?"),
+        "jerk-sweep: other settings have more than 24 combinations."
+    );
+}
+
+/// A group of poses is no reason to leave the chart of a sweep out.
+#[test]
+fn sweeps_over_poses_are_drawn() {
+    let (exhibits, _) =
+        exhibited("jerk_limit_deg_s3 = [80, 90]\nrandom_poses = { count = 12, seed = 1 }");
+    let names: Vec<&str> = exhibits.leading_charts.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["jerk-sweep"]);
 }
 
 /// Of three instances one is not tried yet.
@@ -211,99 +243,6 @@ fn instances_not_tried_yet_are_not_off_the_goal() {
     let good = answer(&told, "How good is it?");
     let part = "The base ends within 0.01° of the goal on 2 of 2 instances";
     assert!(good.contains(part) && good.ends_with("One more is not tried yet."), "{good}");
-}
-
-fn points(setting: &[f64]) -> Vec<Point> {
-    let point = |&value: &f64| Point {
-        others: Vec::new(),
-        pose: String::new(),
-        setting: value,
-        cost: 0.6 + 0.3 / value,
-        residual_deg: if value < 0.15 { 29.0 } else { 0.0 },
-        duration: 7.8 * (value / 80.0).powf(-1.0 / 3.0).max(0.6),
-    };
-    setting.iter().map(point).collect()
-}
-
-fn swept(setting: Swept, values: &[f64], bound: Option<f64>) -> Figure {
-    sweep_chart(&points(values), setting, bound).unwrap()
-}
-
-/// Durations \[s\] and residuals \[°\] over jerk limits on another arm: the lower limits leave too little time.
-const MISSED: [(f64, f64, f64); 5] =
-    [(20.0, 4.1, 0.4), (40.0, 4.1, 0.2), (80.0, 7.3, 0.0), (160.0, 5.8, 0.0), (320.0, 5.2, 0.0)];
-
-fn missed(others: &[String], pose: &str, times: f64) -> Vec<Point> {
-    let point = |(setting, duration, residual_deg)| Point {
-        others: others.to_vec(),
-        pose: pose.to_owned(),
-        setting,
-        cost: duration / 10.0,
-        residual_deg,
-        duration: times * duration,
-    };
-    MISSED.map(point).to_vec()
-}
-
-/// The same under ten limits on rates.
-fn two_settings() -> Vec<Point> {
-    let rates =
-        (1..=10).map(|rate| (format!("rate ≤ {} °/s", 10 * rate), 1.5 - 0.05 * f64::from(rate)));
-    rates.flat_map(|(rate, times)| missed(&[rate], "", times)).collect()
-}
-
-/// Five poses, of which two reach the goal throughout.
-fn poses() -> Vec<Point> {
-    let pose = |k: u32| {
-        let mut points = missed(&[], &k.to_string(), 1.0 + 0.1 * f64::from(k));
-        if k < 3 {
-            points.iter_mut().for_each(|point| point.residual_deg = 0.0);
-        }
-        points
-    };
-    (1..=5).flat_map(pose).collect()
-}
-
-/// The lines of a figure's first panel with more than one point, by their abscissae.
-fn joined(figure: &Figure) -> Vec<Vec<f64>> {
-    let lines = figure.panels[0].marks.iter().filter_map(|mark| match mark {
-        Mark::Line(line) => Some(line.points.iter().map(|[x, _]| *x).collect::<Vec<f64>>()),
-        _ => None,
-    });
-    lines.filter(|line| line.len() > 1).collect()
-}
-
-/// Neither the curve nor the law joins motions that miss the goal to those that reach it; what they miss it by stands below.
-#[test]
-fn what_misses_the_goal_is_not_joined() {
-    let figure = sweep_chart(&missed(&[], "", 1.0), Swept::JerkLimit, None).unwrap();
-    assert_eq!(joined(&figure), [vec![80.0, 320.0], vec![80.0, 160.0, 320.0]]);
-    assert_eq!(figure.panels[1].y.label, "residual [°]");
-    let texts = texts(figure.tree().unwrap().root());
-    assert!(texts.iter().any(|(text, _)| text == "goal missed by more than 0.01°"), "{texts:?}");
-    let reached = swept(Swept::JerkLimit, &[80.0, 160.0], None);
-    assert_eq!(reached.panels.len(), 1);
-}
-
-#[test]
-fn two_settings_have_a_panel_for_each_value_of_one() {
-    let figure = sweep_chart(&two_settings(), Swept::JerkLimit, None).unwrap();
-    let titles: Vec<&str> = figure.panels.iter().map(|panel| panel.title.as_str()).collect();
-    assert_eq!(titles[..2], ["rate ≤ 10 °/s", "rate ≤ 20 °/s"]);
-    assert_eq!(titles.iter().filter(|title| !title.is_empty()).count(), 10);
-}
-
-/// Of two poses that take 1.1 and 1.2 times as long.
-#[test]
-fn poses_have_a_median_of_those_that_reach_the_goal_throughout() {
-    let figure = sweep_chart(&poses(), Swept::JerkLimit, None).unwrap();
-    let median = figure.panels[0].marks.iter().find_map(|mark| match mark {
-        Mark::Line(line) if line.name.starts_with("median") => Some(line),
-        _ => None,
-    });
-    let median = median.unwrap();
-    assert_eq!(median.name, "median of 2 poses that reach the goal throughout");
-    assert!((median.points[2][1] - 1.15 * 7.3).abs() < 1e-12, "{median:?}");
 }
 
 fn front() -> Figure {
@@ -322,6 +261,21 @@ fn front() -> Figure {
         is_efficient,
     };
     pareto(&motions.map(trade)).unwrap()
+}
+
+/// More fronts than a panel can hold have panels of their own.
+#[test]
+fn many_fronts_are_drawn() {
+    let trade = |(i, weight): (usize, f64)| Trade {
+        others: format!("jerk ≤ {} °/s³", 20 * (i + 1)),
+        weight,
+        duration: 5.0 + weight,
+        residual_deg: 20.0 - 20.0 * weight,
+        is_efficient: true,
+    };
+    let trades: Vec<Trade> =
+        (0..10).flat_map(|i| [0.1, 0.9].map(|weight| (i, weight))).map(trade).collect();
+    assert_eq!(pareto(&trades).unwrap().panels.len(), 10);
 }
 
 fn motion() -> Motion {
