@@ -7,7 +7,7 @@ use textwrap::{WordSeparator, WordSplitter};
 
 use super::CliError;
 use super::results::ResultsFolder;
-use super::warnings::warn_of_budgets;
+use super::warnings::{warn_of_budgets, warn_of_damage};
 use crate::exhibit::Finding;
 use crate::experiment::{Plan, Store, standing};
 use crate::report::write;
@@ -32,6 +32,7 @@ const LINE: usize = 100;
 /// Prints what all stored runs of the plan say; writes and draws it.
 pub(super) fn report(plan: &Plan, store: &Store, folder: &Path) -> Result<(), CliError> {
     let report = write(plan, store, folder)?;
+    warn_of_damage(store);
     if report.stored < plan.runs.len() {
         say!("{} of {} runs are stored so far", report.stored, plan.runs.len());
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::CliError;
+use super::{CliError, start_threads};
 use crate::experiment::Folder;
 use crate::registry::registry;
 
@@ -19,6 +19,7 @@ pub(super) struct ResultsFolder {
 impl ResultsFolder {
     /// Reads the experiment that the folder keeps. Nothing is written.
     pub(super) fn open(&self) -> Result<Folder, CliError> {
+        start_threads()?;
         Ok(Folder::open(&self.folder, &registry())?)
     }
 }

@@ -44,6 +44,16 @@ const BESIDE: [&str; 3] = ["label", "seeds", "budget"];
 /// The key of an optimiser of another program.
 const OUTSIDE: &str = "outside";
 
+/// Most runs of an experiment; each takes some kilobytes until all are done.
+pub(super) const MOST_RUNS: u64 = 1_000_000;
+
+/// The error of more runs than that.
+pub(super) fn too_many(count: u64, place: Range<usize>, document: &Document) -> InputError {
+    let message = format!("found {count} runs, expected {MOST_RUNS} at most");
+    let help = "make several experiments of it".to_owned();
+    document.error_at(place, message, Some(help))
+}
+
 /// The key of a sweep, which is gone when the field is spelt out.
 const SWEEP: &str = "sweep";
 
@@ -171,10 +181,16 @@ pub(super) fn spell_out(
     let Some(DeValue::Array(field)) = field else {
         return Ok(());
     };
-    let mut spelt_out = DeArray::new();
+    let (mut spelt_out, mut count) = (DeArray::new(), 0_u64);
     for entry in field.iter() {
         match entry.get_ref() {
             DeValue::Table(table) => {
+                // Each combination is a table of its own, so they are counted before they are made.
+                let sweep = table.get(SWEEP).map_or(1, |sweep| combination_count(sweep.get_ref()));
+                count = count.saturating_add(sweep);
+                if count > MOST_RUNS {
+                    return Err(too_many(count, entry.span(), document));
+                }
                 let (beside, choices) = combinations(table.clone(), entry.span(), document)?;
                 for choice in choices {
                     check_formulations(&choice, spaces, document)?;
@@ -186,6 +202,18 @@ pub(super) fn spell_out(
     }
     *field = spelt_out;
     Ok(())
+}
+
+/// How many combinations the lists of a sweep have, at any depth.
+fn combination_count(sweep: &DeValue<'_>) -> u64 {
+    match sweep {
+        DeValue::Table(table) => {
+            let inner = table.iter().map(|(_, value)| combination_count(value.get_ref()));
+            inner.fold(1, u64::saturating_mul)
+        }
+        DeValue::Array(values) => values.len() as u64,
+        _ => 1,
+    }
 }
 
 fn entrant_table<'i>(

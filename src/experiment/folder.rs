@@ -111,7 +111,7 @@ impl Folder {
                 return Err(FolderError::Own(own.clone()));
             }
         }
-        let store = Store::open(path)?;
+        let store = Store::open(path)?.of(&plan);
         let mut was_another = false;
         for (file, text) in files {
             was_another = keep(&file, &text)?;
@@ -127,7 +127,7 @@ impl Folder {
             return Err(FolderError::NoResults(path.to_owned()));
         }
         let plan = Experiment::read(&Document::read(&file)?, registry)?.plan()?;
-        let store = Store::existing(path);
+        let store = Store::existing(path).of(&plan);
         Ok(Self { path: path.to_owned(), plan, store, was_another: false })
     }
 

@@ -6,7 +6,7 @@ use std::num::NonZeroU64;
 use serde::Serialize;
 
 use super::entrant::Entrant;
-use super::field::{Entry, labelled};
+use super::field::{Entry, MOST_RUNS, labelled, too_many};
 use super::file::Experiment;
 use super::run::Run;
 use super::schema::{FORMAT, runs};
@@ -19,9 +19,6 @@ use crate::search::Failure;
 
 /// Raised when a change makes the same run give another result.
 const RESULT_VERSION: u32 = 5;
-
-/// Most runs of an experiment; each takes some kilobytes until all are done.
-const MOST_RUNS: u64 = 1_000_000;
 
 /// An experiment spelt out.
 #[derive(Debug, Clone)]
@@ -63,6 +60,7 @@ impl Experiment {
     /// Spells the experiment out. Two runs that would be the same are a mistake.
     pub fn plan(&self) -> Result<Plan, InputError> {
         let document = &self.document;
+        self.check_count(self.source.as_ref().map_or(0, |source| source.count()))?;
         let mut instances = match &self.source {
             Some(source) => source.instances(document)?,
             None => Vec::new(),
@@ -77,14 +75,7 @@ impl Experiment {
             TargetTable::give(targets, &mut instances, document)?;
         }
         self.check_budgets()?;
-        let seeds = |entry: &Entry| entry.entrant.seeds.unwrap_or(self.seeds).get();
-        let seeds = self.field.iter().map(seeds).fold(0, u64::saturating_add);
-        let count = seeds.saturating_mul(instances.len() as u64);
-        if count > MOST_RUNS {
-            let message = format!("found {count} runs, expected {MOST_RUNS} at most");
-            let help = "make several experiments of it".to_owned();
-            return Err(document.error_at(self.field_place.clone(), message, Some(help)));
-        }
+        self.check_count(instances.len() as u64)?;
         let optimisers = labelled(&self.field, &instances);
         let runs = runs(&instances, &optimisers, self.seeds, self.budget);
         let mut keys = HashSet::new();
@@ -100,6 +91,18 @@ impl Experiment {
         let plan = self.spelt_out(instances, optimisers, runs);
         check_quantities(&plan, document)?;
         Ok(plan)
+    }
+
+    /// Whether so many instances make few enough runs.
+    fn check_count(&self, instances: u64) -> Result<(), InputError> {
+        let seeds = |entry: &Entry| entry.entrant.seeds.unwrap_or(self.seeds).get();
+        let seeds = self.field.iter().map(seeds).fold(0, u64::saturating_add);
+        match seeds.saturating_mul(instances) {
+            count if count > MOST_RUNS => {
+                Err(too_many(count, self.field_place.clone(), &self.document))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn spelt_out(

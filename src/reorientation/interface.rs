@@ -10,11 +10,15 @@ use super::exhibits;
 use super::fitness::Assessment;
 use super::subject::{DURATION, KIND, RESIDUAL, SAME_MOTION, TaskSubject};
 use crate::exhibit::Exhibits;
+use crate::experiment::schema::runs;
 use crate::experiment::{
     Identity, Instance, Judgement, Quantity, Results, Subject, Value, ValueKind,
 };
 use crate::search::{Failure, Problem};
 use crate::task::Task;
+
+/// The name of the measure that is a list.
+const COEFFICIENTS: &str = "coefficients";
 
 impl Subject for TaskSubject {
     fn kind(&self) -> &'static str {
@@ -112,11 +116,18 @@ impl Subject for TaskSubject {
             Quantity::new(DURATION, ValueKind::Real, "duration [s]").shown("t_f [s]"),
             Quantity::new("penalty", ValueKind::Real, "penalty in `certified_j`"),
             Quantity::new(
-                "coefficients",
+                COEFFICIENTS,
                 ValueKind::Reals,
                 "the motion's free coefficients, joint by joint: of bumps, or what control points add to the straight path",
             ),
         ]
+    }
+
+    fn lengths(&self, space: &str) -> Vec<(String, usize)> {
+        let variables = self.formulated(space).ok().map(|problem| problem.bounds().len());
+        let coefficients = (COEFFICIENTS.to_owned(), self.reorientation().dimension());
+        let point = variables.map(|count| (runs::POINT.to_owned(), count));
+        point.into_iter().chain([coefficients]).collect()
     }
 
     fn judge(&self, space: &str, x: &[f64]) -> Result<Option<Judgement>, Failure> {

@@ -11,7 +11,7 @@ use crate::analysis::tables::NAMES as TABLES;
 use crate::analysis::{Analysis, csv, latex, markdown, render, summary, targets};
 use crate::exhibit::{Chart, Finding, Table};
 use crate::experiment::{Plan, Run, Store, load};
-use crate::output::{create_folder, write_file};
+use crate::output::{create_folder, remove_temporary, write_file};
 use crate::plot;
 
 /// What the page is called.
@@ -60,6 +60,9 @@ pub fn write(plan: &Plan, store: &Store, folder: &Path) -> Result<Report, Report
         files: &files(folder),
         facts: &provenance(plan, store)?,
     };
+    for folder in [folder, &folder.join("tables"), &folder.join("figures")] {
+        remove_temporary(folder);
+    }
     let path = folder.join(PAGE);
     write_file(&path, page.html()?.as_bytes())?;
     Ok(Report {
