@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use driftless::experiment::{
-    Damage, Experiment, Folder, Options, Progress, Record, RunSpec, load, standing,
+    Damage, Experiment, Folder, Options, Progress, Record, RunSpec, Store, load, standing,
 };
 use driftless::input::Document;
 use driftless::registry;
 use driftless::search::{Rng, Watch};
 use polars::prelude::*;
 
-/// 100 runs of 20 evaluations, in a few batches.
-const MANY: &str = "name = 'many'\nseeds = 25\nbudget = { evaluations = 20 }\n[sweep]\nweight_base = [0.5, 1]\n\
+/// 100 runs of eight evaluations, in a few batches.
+const MANY: &str = "name = 'many'\nseeds = 25\nbudget = { evaluations = 8 }\n[sweep]\nweight_base = [0.5, 1]\n\
     [[optimiser]]\nrandom = {}\n[[optimiser]]\nde = {}\n";
 /// Six runs, each a batch of its own.
 const FEW: &str = "name = 'few'\nseeds = 3\nbudget = { evaluations = 500 }\n\
@@ -85,7 +85,7 @@ fn no_flipped_bit_goes_unnoticed() {
     run(&folder);
     let (whole, files) = (tables(&folder), files(path));
     assert_eq!((whole[0].height(), folder.store.damaged()), (100, Vec::new()));
-    assert!((9..=60).contains(&files.len()), "{} files", files.len());
+    assert!((6..=60).contains(&files.len()), "{} files", files.len());
     let mut rng = Rng::new(50);
     let mut last = None;
     for flip in 0..2_000 {
@@ -95,14 +95,14 @@ fn no_flipped_bit_goes_unnoticed() {
         let bit = rng.index(8 * bytes.len());
         flipped[bit / 8] ^= 1 << (bit % 8);
         fs::write(file, &flipped).unwrap();
-        let folder = open(path);
-        let rest = folder.store.keys().unwrap();
-        let damaged = folder.store.damaged();
+        let store = Store::existing(path);
+        let (rest, damaged) = (store.keys().unwrap(), store.damaged());
         assert_eq!(damaged.len(), 1, "bit {bit} of {}", file.display());
         assert_eq!(&damaged[0].path, file);
         assert_eq!(damaged[0].reason, "does not match its checksum");
         assert!((1..100).contains(&rest.len()), "{} runs", rest.len());
         if flip % 100 == 0 {
+            let folder = open(path);
             let runs = load(&folder.plan, &folder.store).unwrap();
             assert_eq!(runs.len(), rest.len());
             assert!(runs.iter().all(|run| rest.contains(&run.key) && !run.trace.is_empty()));

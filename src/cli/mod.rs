@@ -348,12 +348,9 @@ fn watch() -> Arc<Watch> {
 fn start_threads() -> Result<(), CliError> {
     // An error without a cause is that they were started already.
     match rayon::ThreadPoolBuilder::new().build_global() {
-        Err(error) if error.source().is_some() => return Err(CliError::Threads(error.to_string())),
-        _ => {}
+        Err(error) if error.source().is_some() => Err(CliError::Threads(error.to_string())),
+        _ => Ok(()),
     }
-    #[cfg(feature = "harness")]
-    crate::experiment::start_threads().map_err(CliError::Threads)?;
-    Ok(())
 }
 
 /// A path given as an argument, for messages.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{CliError, start_threads};
+use super::CliError;
 use crate::experiment::Folder;
 use crate::registry::registry;
 
@@ -21,6 +21,16 @@ impl ResultsFolder {
     pub(super) fn open(&self) -> Result<Folder, CliError> {
         start_threads()?;
         Ok(Folder::open(&self.folder, &registry())?)
+    }
+}
+
+/// Starts the threads that work on results is shared out to, those of polars among them.
+pub(super) fn start_threads() -> Result<(), CliError> {
+    super::start_threads()?;
+    if crate::experiment::start_threads() {
+        Ok(())
+    } else {
+        Err(CliError::Threads("the system gives no more of them".to_owned()))
     }
 }
 

@@ -7,8 +7,9 @@ use clap::Args;
 
 use super::progress::Bar;
 use super::report::report;
+use super::results::start_threads;
 use super::warnings::warn_of_subjects;
-use super::{CliError, read_or, start_threads, watch};
+use super::{CliError, read_or, watch};
 use crate::experiment::{
     Damage, Experiment, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard,
     ShardChoice, Store,

@@ -44,15 +44,8 @@ const BESIDE: [&str; 3] = ["label", "seeds", "budget"];
 /// The key of an optimiser of another program.
 const OUTSIDE: &str = "outside";
 
-/// Most runs of an experiment; each takes some kilobytes until all are done.
-pub(super) const MOST_RUNS: u64 = 1_000_000;
-
-/// The error of more runs than that.
-pub(super) fn too_many(count: u64, place: Range<usize>, document: &Document) -> InputError {
-    let message = format!("found {count} runs, expected {MOST_RUNS} at most");
-    let help = "make several experiments of it".to_owned();
-    document.error_at(place, message, Some(help))
-}
+/// Most optimisers of a field; each takes some kilobytes, and a report compares every two.
+const MOST_OPTIMISERS: u64 = 10_000;
 
 /// The key of a sweep, which is gone when the field is spelt out.
 const SWEEP: &str = "sweep";
@@ -188,8 +181,10 @@ pub(super) fn spell_out(
                 // Each combination is a table of its own, so they are counted before they are made.
                 let sweep = table.get(SWEEP).map_or(1, |sweep| combination_count(sweep.get_ref()));
                 count = count.saturating_add(sweep);
-                if count > MOST_RUNS {
-                    return Err(too_many(count, entry.span(), document));
+                if count > MOST_OPTIMISERS {
+                    let message =
+                        format!("found {count} optimisers, expected {MOST_OPTIMISERS} at most");
+                    return Err(document.error_at(entry.span(), message, None));
                 }
                 let (beside, choices) = combinations(table.clone(), entry.span(), document)?;
                 for choice in choices {

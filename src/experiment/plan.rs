@@ -6,7 +6,7 @@ use std::num::NonZeroU64;
 use serde::Serialize;
 
 use super::entrant::Entrant;
-use super::field::{Entry, MOST_RUNS, labelled, too_many};
+use super::field::{Entry, labelled};
 use super::file::Experiment;
 use super::run::Run;
 use super::schema::{FORMAT, runs};
@@ -19,6 +19,9 @@ use crate::search::Failure;
 
 /// Raised when a change makes the same run give another result.
 const RESULT_VERSION: u32 = 5;
+
+/// Most runs of an experiment; each takes some kilobytes until all are done.
+const MOST_RUNS: u64 = 1_000_000;
 
 /// An experiment spelt out.
 #[derive(Debug, Clone)]
@@ -97,12 +100,13 @@ impl Experiment {
     fn check_count(&self, instances: u64) -> Result<(), InputError> {
         let seeds = |entry: &Entry| entry.entrant.seeds.unwrap_or(self.seeds).get();
         let seeds = self.field.iter().map(seeds).fold(0, u64::saturating_add);
-        match seeds.saturating_mul(instances) {
-            count if count > MOST_RUNS => {
-                Err(too_many(count, self.field_place.clone(), &self.document))
-            }
-            _ => Ok(()),
+        let count = seeds.saturating_mul(instances);
+        if count <= MOST_RUNS {
+            return Ok(());
         }
+        let message = format!("found {count} runs, expected {MOST_RUNS} at most");
+        let help = "make several experiments of it".to_owned();
+        Err(self.document.error_at(self.field_place.clone(), message, Some(help)))
     }
 
     fn spelt_out(

@@ -177,15 +177,14 @@ fn planning_takes_little_memory() {
                 .replace("500", "10000"),
         )
         .with("many.toml", many);
-    for (file, runs) in [
-        ("optimisers.toml", 24_300_000_u64),
-        ("task.toml", 16_200_000_000),
-        ("functions.toml", 2_100_000),
+    for (file, found) in [
+        ("optimisers.toml", "24300000 optimisers, expected 10000 at most"),
+        ("task.toml", "16200000000 runs, expected 1000000 at most"),
+        ("functions.toml", "2100000 runs, expected 1000000 at most"),
     ] {
         let output = within(&folder, 3_000_000, &["check", file]);
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-        let expected = format!("found {runs} runs, expected 1000000 at most");
-        assert!(stderr(&output).contains(&expected), "{}", stderr(&output));
+        assert!(stderr(&output).contains(&format!("found {found}")), "{}", stderr(&output));
     }
     let output = within(&folder, 3_000_000, &["check", "many.toml", "--no-estimate"]);
     assert!(output.status.success(), "{}", stderr(&output));

@@ -4,6 +4,8 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::io::{self, Cursor};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 use polars::prelude::*;
 
@@ -15,6 +17,9 @@ use super::stack::{Stack, only};
 use super::{Store, StoreError, TABLES, io_error};
 use crate::experiment::caught::caught;
 use crate::experiment::schema::runs;
+
+/// Fewer batches than that are not worth a thread of their own.
+const BATCHES_PER_THREAD: usize = 20;
 
 impl Store {
     /// The keys of all stored runs.
@@ -93,7 +98,9 @@ impl Store {
         mut visitor: impl FnMut(&str, &Contents) -> Result<(), Flaw>,
     ) -> Result<(), StoreError> {
         'again: loop {
-            for batch in self.batches()? {
+            let batches = self.batches()?;
+            self.look_through(&batches);
+            for batch in batches {
                 match self.contents(&batch).and_then(|contents| visitor(&batch, &contents)) {
                     Ok(()) => {}
                     Err(Flaw::Damaged(damage)) => self.note(&batch, damage),
@@ -105,6 +112,32 @@ impl Store {
             }
             return Ok(());
         }
+    }
+
+    /// Looks through many batches at a time; what comes of it is known from then on.
+    fn look_through(&self, batches: &BTreeSet<String>) {
+        let known = self.known();
+        let is_new = |batch: &&String| {
+            !known.sound.contains_key(*batch) && !known.damaged.contains_key(*batch)
+        };
+        let new: Vec<&String> = batches.iter().filter(is_new).collect();
+        drop(known);
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(batch) = new.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if let Err(Flaw::Damaged(damage)) = self.contents(batch) {
+                    self.note(batch, damage);
+                }
+            }
+        };
+        thread::scope(|scope| {
+            let threads = thread::available_parallelism().map_or(1, usize::from);
+            for _ in 1..threads.min(new.len() / BATCHES_PER_THREAD) {
+                // Where there are no more threads, those that there are do all.
+                let _ = thread::Builder::new().spawn_scoped(scope, work);
+            }
+            work();
+        });
     }
 
     /// What a batch holds. The first time all of it is read and looked through.
@@ -179,11 +212,12 @@ impl Store {
     ) -> Result<DataFrame, Flaw> {
         let (bytes, seal) = self.bytes(table, batch)?;
         let read = || {
-            let schema = ParquetReader::new(Cursor::new(&bytes)).schema()?;
+            let mut reader = ParquetReader::new(Cursor::new(&bytes));
+            let schema = reader.schema()?;
             let (has, lacks): (Vec<&str>, Vec<&str>) =
                 optional.iter().partition(|name| schema.get(name).is_some());
             let names = columns.iter().chain(&has).map(|&name| name.to_owned()).collect();
-            let mut frame = ParquetReader::new(Cursor::new(&bytes))
+            let mut frame = reader
                 .with_columns((!columns.is_empty()).then_some(names))
                 .read_parallel(ParallelStrategy::None)
                 .finish()?;
