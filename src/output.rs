@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// A file or folder that the system would not let us have.
 #[derive(Debug, thiserror::Error)]
@@ -29,7 +30,8 @@ pub(crate) fn check_writable(path: &Path) -> Result<(), FileError> {
     readable_by_all(0o666).tempfile_in(folder_of(path)).map(drop).map_err(error)
 }
 
-fn folder_of(path: &Path) -> &Path {
+/// The folder that a file is in.
+pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
@@ -79,6 +81,7 @@ pub(crate) fn write_folder<E: From<FileError>>(
         Err(e) => return Err(error(e).into()),
     };
     create_folder(folder_of(path))?;
+    remove_temporary(folder_of(path));
     let folder = readable_by_all(0o777).tempdir_in(folder_of(path)).map_err(error)?;
     fill(folder.path())?;
     if exists {
@@ -90,10 +93,38 @@ pub(crate) fn write_folder<E: From<FileError>>(
     Ok(())
 }
 
+/// What the names of temporary files begin with, so that remains of a process that was killed can be told from others'.
+const TEMPORARY: &str = ".tmp-driftless-";
+
+/// Remains of that age are nobody's: no file takes that long to write.
+const OLD: Duration = Duration::from_hours(24);
+
+/// Removes the temporary files and folders that processes that were killed have left in a folder.
+pub(crate) fn remove_temporary(folder: &Path) {
+    remove_old(folder, |name| name.starts_with(TEMPORARY));
+}
+
+/// Removes old files and folders of such names. What cannot be removed harms nobody.
+pub(crate) fn remove_old(folder: &Path, is_ours: impl Fn(&str) -> bool) {
+    let is_old = |metadata: &fs::Metadata| {
+        let age = metadata.modified().ok().and_then(|time| time.elapsed().ok());
+        age.is_some_and(|age| age > OLD)
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_ours = entry.file_name().to_str().is_some_and(&is_ours);
+        let Some(found) = entry.metadata().ok().filter(|found| is_ours && is_old(found)) else {
+            continue;
+        };
+        let path = entry.path();
+        let _ = if found.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    }
+}
+
 /// What is temporary is private by default; a result is for everybody whom the umask lets read.
-#[cfg_attr(not(unix), expect(unused_variables, unused_mut, reason = "modes are Unix's"))]
+#[cfg_attr(not(unix), expect(unused_variables, reason = "modes are Unix's"))]
 fn readable_by_all(mode: u32) -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
+    builder.prefix(TEMPORARY);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;

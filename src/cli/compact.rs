@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::results::ResultsFolder;
+use super::warnings::warn_of_damage;
 use super::{CliError, watch};
 
 /// Merge many small files of results into few, while others run or read
@@ -20,6 +21,7 @@ impl Compact {
             Some(done) => say!("{folder}: {} files per table, {} before", done.after, done.before),
             None => say!("{folder}: another process is merging files"),
         }
+        warn_of_damage(&results.store);
         Ok(())
     }
 }

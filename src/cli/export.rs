@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::results::{ResultsFolder, no_results};
+use super::warnings::warn_of_damage;
 use crate::experiment::{Plan, Run, load, standing};
 use crate::export::{Suite, SuiteFormat, write_suite};
 use crate::reorientation::{MotionFormat, TaskSubject, write_motions};
@@ -41,6 +42,7 @@ impl Export {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let folder = self.results.open()?;
         let (plan, runs) = (&folder.plan, load(&folder.plan, &folder.store)?);
+        warn_of_damage(&folder.store);
         if runs.is_empty() {
             return Err(match standing(plan, &folder.store)?.unread() {
                 Some(message) => CliError::Usage { message, help: None },

@@ -32,13 +32,15 @@ mod report;
 mod results;
 #[cfg(feature = "harness")]
 mod run;
+mod signals;
 #[cfg(feature = "harness")]
 mod status;
 mod walls;
 #[cfg(feature = "harness")]
 mod warnings;
 
-use std::fmt;
+use std::error::Error as _;
+use std::fmt::{self, Write as _};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -117,6 +119,9 @@ enum CliError {
         #[help]
         help: Option<String>,
     },
+    /// The system gives no more threads.
+    #[error("cannot start worker threads: {0}")]
+    Threads(String),
     /// The user wanted the command to end.
     #[error("interrupted: {0}")]
     Interrupted(String),
@@ -270,7 +275,8 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let code = error.exit_code();
-            note!("{:?}", Report::new(error));
+            // Where that cannot be written, what it would have said is of no use to anybody.
+            let _ = writeln!(io::stderr(), "{}", shown_error(error));
             code
         }
     }
@@ -278,7 +284,7 @@ pub fn main() -> ExitCode {
 
 /// Prints a line to standard output. A reader who has seen enough and left is no error.
 fn say(line: fmt::Arguments<'_>) -> Result<(), CliError> {
-    match writeln!(io::stdout(), "{line}") {
+    match writeln!(io::stdout(), "{}", plain(&line.to_string())) {
         Err(source) if source.kind() != io::ErrorKind::BrokenPipe => {
             let path = PathBuf::from("standard output");
             Err(FileError { action: "write to", path, source }.into())
@@ -289,7 +295,36 @@ fn say(line: fmt::Arguments<'_>) -> Result<(), CliError> {
 
 /// Prints a line to standard error, if it can be.
 fn note(line: fmt::Arguments<'_>) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", plain(&line.to_string()));
+}
+
+/// A text without characters that a terminal takes for orders, such as those that begin escape sequences: each is
+/// written as JSON writes it.
+fn plain(text: &str) -> String {
+    let is_order = |c: char| c.is_control() && c != '\n' && c != '\t';
+    text.chars().fold(String::with_capacity(text.len()), |mut plain, c| {
+        if is_order(c) {
+            let _ = write!(plain, "\\u{:04x}", u32::from(c));
+        } else {
+            plain.push(c);
+        }
+        plain
+    })
+}
+
+/// An error as a terminal shows it: in colour where it has any, and nothing else of what a terminal takes for orders.
+fn shown_error(error: CliError) -> String {
+    let shown = format!("{:?}", Report::new(error));
+    let mut parts = shown.split("\x1b[");
+    let mut text = plain(parts.next().unwrap_or_default());
+    for part in parts {
+        let rest = part.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';');
+        let colour = &part[..part.len() - rest.len()];
+        text += if rest.starts_with('m') { "\x1b[" } else { "\\u001b[" };
+        text += colour;
+        text += &plain(rest);
+    }
+    text
 }
 
 /// The file named, or a text that comes with the program.
@@ -307,22 +342,23 @@ fn warn_of(robot: &Robot) {
     }
 }
 
-/// Set by Ctrl-C.
+/// Set by Ctrl-C and other signals that ask the program to end.
 fn watch() -> Arc<Watch> {
     static WATCH: LazyLock<Arc<Watch>> = LazyLock::new(|| {
         let watch = Arc::new(Watch::default());
-        let handler = watch.clone();
-        // Without a handler Ctrl-C still ends the program, only less gracefully.
-        let _ = ctrlc::set_handler(move || {
-            if handler.is_interrupted() {
-                // The second time, at once: what is being written is in a temporary file.
-                std::process::exit(130);
-            }
-            handler.interrupt();
-        });
+        signals::interrupt_on_signals(&watch);
         watch
     });
     WATCH.clone()
+}
+
+/// Starts the threads that work is shared out to, before there is any: later, those that are missing are a panic.
+fn start_threads() -> Result<(), CliError> {
+    // An error without a cause is that they were started already.
+    match rayon::ThreadPoolBuilder::new().build_global() {
+        Err(error) if error.source().is_some() => Err(CliError::Threads(error.to_string())),
+        _ => Ok(()),
+    }
 }
 
 /// A path given as an argument, for messages.

@@ -3,7 +3,7 @@
 use std::io::IsTerminal as _;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::{JoinHandle, park_timeout, spawn};
+use std::thread::{Builder, JoinHandle, park_timeout};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -32,7 +32,7 @@ impl Bar {
         let on_terminal = std::io::stderr().is_terminal();
         let painter = {
             let (bar, done) = (bar.clone(), done.clone());
-            spawn(move || {
+            let paint = move || {
                 let mut said = Instant::now();
                 while !done.load(Ordering::Relaxed) {
                     bar.set_position(watch.evaluations());
@@ -42,16 +42,18 @@ impl Bar {
                     }
                     park_timeout(Duration::from_millis(100));
                 }
-            })
+            };
+            // Where there are no more threads to be had, the work matters more than its bar.
+            Builder::new().spawn(paint).ok()
         };
-        Self { display: bar, done, painter: Some(painter) }
+        Self { display: bar, done, painter }
     }
 
     /// Shows a line: above the bar on a terminal, by itself elsewhere.
     #[cfg(feature = "harness")]
     pub(super) fn line(&self, line: &str) {
         if std::io::stderr().is_terminal() {
-            self.display.println(line);
+            self.display.println(super::plain(line));
         } else {
             note!("{line}");
         }

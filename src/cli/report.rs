@@ -7,7 +7,7 @@ use textwrap::{WordSeparator, WordSplitter};
 
 use super::CliError;
 use super::results::ResultsFolder;
-use super::warnings::warn_of_budgets;
+use super::warnings::{warn_of_budgets, warn_of_damage};
 use crate::exhibit::Finding;
 use crate::experiment::{Folder, standing};
 use crate::report::{Target, write};
@@ -49,6 +49,7 @@ const LINE: usize = 100;
 pub(super) fn report(folder: &Folder, target: &Target<'_>) -> Result<Option<String>, CliError> {
     let Folder { plan, store, .. } = folder;
     let report = write(plan, store, target)?;
+    warn_of_damage(store);
     if report.stored < plan.runs.len() {
         say!("{} of {} runs are stored so far", report.stored, plan.runs.len());
     }

@@ -7,11 +7,12 @@ use clap::Args;
 
 use super::progress::Bar;
 use super::report::report;
+use super::results::start_threads;
 use super::warnings::warn_of_subjects;
 use super::{CliError, read_or, watch};
 use crate::experiment::{
-    Experiment, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard, ShardChoice,
-    Store,
+    Damage, Experiment, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard,
+    ShardChoice, Store,
 };
 use crate::registry::registry;
 use crate::report::Target;
@@ -32,7 +33,7 @@ pub(super) struct Run {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     budget: Option<u64>,
     /// Runs at a time [default: one per processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Only a disjoint part of the runs, such as 0/4; /4 takes the index from the scheduler that runs
     /// this, and --shard alone the count too
@@ -50,6 +51,7 @@ pub(super) struct Run {
 struct Lines<'a> {
     bar: &'a Bar,
     plan: &'a Plan,
+    damaged: PathBuf,
     quiet: bool,
 }
 
@@ -74,10 +76,18 @@ impl Progress for Lines<'_> {
             run.seed
         ));
     }
+
+    fn set_aside(&self, damage: &Damage) {
+        self.bar.line(&format!(
+            "warning: {damage}; the files of this batch are now in {}, and its runs are missing",
+            self.damaged.display()
+        ));
+    }
 }
 
 impl Run {
     pub(super) fn execute(self) -> Result<(), CliError> {
+        start_threads()?;
         let shard = self.shard.map(told).transpose()?;
         let (document, registry) =
             (read_or(self.file.as_deref(), Experiment::embedded)?, registry());
@@ -128,7 +138,9 @@ impl Run {
         let (watch, mine, store) = (watch(), folder.runs(shard), &folder.store);
         if self.fresh {
             let own = mine.iter().filter(|run| folder.plan.obstacle(run).is_none());
-            store.remove(&own.map(|run| run.key.as_str()).collect())?;
+            let waiting =
+                || note!("note: another process is merging files; waiting until it is done");
+            store.remove(&own.map(|run| run.key.as_str()).collect(), &waiting)?;
         }
         let stored = store.keys()?;
         let missing = mine.iter().filter(|run| !stored.contains(&run.key));
@@ -138,7 +150,8 @@ impl Run {
         }
         {
             let bar = Bar::new(evaluations, watch.clone());
-            let lines = Lines { bar: &bar, plan: &folder.plan, quiet: self.quiet };
+            let damaged = folder.path().join("damaged");
+            let lines = Lines { bar: &bar, plan: &folder.plan, damaged, quiet: self.quiet };
             let jobs = Some(self.jobs.map_or_else(default_jobs, usize::from));
             folder.run(Options { jobs, shard }, &watch, &lines)?;
         }

@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use super::CliError;
 use super::results::{ResultsFolder, command};
+use super::warnings::warn_of_damage;
 use crate::analysis::render;
-use crate::experiment::{FailedRun, Folder, Standing, Tally, standing};
+use crate::experiment::{Damage, FailedRun, Folder, Standing, Tally, standing};
 
 /// Say which runs of an experiment are done, failed or missing
 #[derive(Debug, Args)]
@@ -49,6 +50,20 @@ struct StatusJson<'a> {
     batches: usize,
     optimisers: Vec<EntrantJson<'a>>,
     failures: Vec<FailureJson<'a>>,
+    /// Files that cannot be used, one a batch.
+    damaged: Vec<DamageJson>,
+}
+
+#[derive(Debug, Serialize)]
+struct DamageJson {
+    file: String,
+    reason: String,
+}
+
+impl From<Damage> for DamageJson {
+    fn from(damage: Damage) -> Self {
+        Self { file: damage.path.display().to_string(), reason: damage.reason }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -106,6 +121,7 @@ fn json<'a>(results: &'a Folder, standing: &'a Standing, batches: usize) -> Stat
         batches,
         optimisers: standing.tallies.iter().enumerate().map(entrant).collect(),
         failures: standing.failures.iter().map(failure).collect(),
+        damaged: results.store.damaged().into_iter().map(DamageJson::from).collect(),
     }
 }
 
@@ -121,6 +137,7 @@ fn tell(results: &Folder, standing: &Standing, batches: usize) -> Result<(), Cli
         "failed" => counts(|t| t.failed),
         "missing" => counts(|t| t.missing()),
     )?;
+    warn_of_damage(&results.store);
     say!("{}", render(&table)?);
     say!(
         "{}: {} of {} runs are stored, {} failed, {} missing; {batches} files per table",

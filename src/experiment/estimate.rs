@@ -37,13 +37,13 @@ pub fn estimate(plan: &Plan, jobs: usize) -> Result<Duration, RunError> {
     let share = ALLOWANCE * u32::try_from(jobs).unwrap_or(u32::MAX).min(1024) / weights;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| RunError::Threads(error.to_string()))?;
-    let seconds: Vec<f64> = pool.install(|| {
+    let seconds: Result<Vec<f64>, RunError> = pool.install(|| {
         let timed = |run: &&RunSpec| attempt(plan, run, (share * weight(plan, run)).min(LONGEST));
         trials.par_iter().map(timed).collect()
     });
     // Seconds and number of the trials of each optimiser on each kind of instance.
     let mut found: HashMap<_, (f64, f64)> = HashMap::new();
-    for (run, seconds) in trials.iter().zip(seconds) {
+    for (run, seconds) in trials.iter().zip(seconds?) {
         let (sum, number) = found.entry(kind(plan, run)).or_default();
         *sum += seconds;
         *number += 1.0;
@@ -89,19 +89,21 @@ fn weight(plan: &Plan, run: &RunSpec) -> u32 {
 }
 
 /// Seconds that a run takes, as far as so much time tells.
-fn attempt(plan: &Plan, run: &RunSpec, time: Duration) -> f64 {
+fn attempt(plan: &Plan, run: &RunSpec, time: Duration) -> Result<f64, RunError> {
     let watch = Watch::default();
     let (over, end) = channel::<()>();
     thread::scope(|scope| {
         let watch = &watch;
-        scope.spawn(move || {
+        let stop = move || {
             if end.recv_timeout(time) == Err(RecvTimeoutError::Timeout) {
                 watch.interrupt();
             }
-        });
+        };
+        let timer = thread::Builder::new().spawn_scoped(scope, stop);
+        timer.map_err(|error| RunError::Threads(error.to_string()))?;
         let seconds = projected(plan, run, watch);
         drop(over);
-        seconds
+        Ok(seconds)
     })
 }
 
@@ -112,6 +114,7 @@ fn projected(plan: &Plan, run: &RunSpec, watch: &Watch) -> f64 {
     let problem = instance.subject.problem(&entrant.space(instance));
     // What cannot be run takes no time.
     let (Ok(whole), Ok(problem)) = (entrant.optimiser(), problem) else { return 0.0 };
+    let _ = caught(|| problem.prepare());
     let split = whole.parts();
     let (part, parts): (&dyn Optimiser, usize) =
         split.as_ref().map_or((whole, 1), |(part, parts)| (&**part, *parts));

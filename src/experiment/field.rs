@@ -44,6 +44,9 @@ const BESIDE: [&str; 3] = ["label", "seeds", "budget"];
 /// The key of an optimiser of another program.
 const OUTSIDE: &str = "outside";
 
+/// Most optimisers of a field; each takes some kilobytes, and a report compares every two.
+const MOST_OPTIMISERS: u64 = 10_000;
+
 /// The key of a sweep, which is gone when the field is spelt out.
 const SWEEP: &str = "sweep";
 
@@ -171,10 +174,18 @@ pub(super) fn spell_out(
     let Some(DeValue::Array(field)) = field else {
         return Ok(());
     };
-    let mut spelt_out = DeArray::new();
+    let (mut spelt_out, mut count) = (DeArray::new(), 0_u64);
     for entry in field.iter() {
         match entry.get_ref() {
             DeValue::Table(table) => {
+                // Each combination is a table of its own, so they are counted before they are made.
+                let sweep = table.get(SWEEP).map_or(1, |sweep| combination_count(sweep.get_ref()));
+                count = count.saturating_add(sweep);
+                if count > MOST_OPTIMISERS {
+                    let message =
+                        format!("found {count} optimisers, expected {MOST_OPTIMISERS} at most");
+                    return Err(document.error_at(entry.span(), message, None));
+                }
                 let (beside, choices) = combinations(table.clone(), entry.span(), document)?;
                 for choice in choices {
                     check_formulations(&choice, spaces, document)?;
@@ -186,6 +197,18 @@ pub(super) fn spell_out(
     }
     *field = spelt_out;
     Ok(())
+}
+
+/// How many combinations the lists of a sweep have, at any depth.
+fn combination_count(sweep: &DeValue<'_>) -> u64 {
+    match sweep {
+        DeValue::Table(table) => {
+            let inner = table.iter().map(|(_, value)| combination_count(value.get_ref()));
+            inner.fold(1, u64::saturating_mul)
+        }
+        DeValue::Array(values) => values.len() as u64,
+        _ => 1,
+    }
 }
 
 fn entrant_table<'i>(

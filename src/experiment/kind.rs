@@ -28,6 +28,11 @@ pub trait Source: fmt::Debug + Send + Sync {
     /// The instances.
     fn instances(&self, document: &Document) -> Result<Vec<Instance>, InputError>;
 
+    /// How many instances it gives, as far as can be told without making them.
+    fn count(&self) -> u64 {
+        1
+    }
+
     /// The keys as a TOML file has them, with every default filled in; or what went wrong.
     fn written(&self) -> Result<String, String>;
 

@@ -63,6 +63,7 @@ impl Experiment {
     /// Spells the experiment out. Two runs that would be the same are a mistake.
     pub fn plan(&self) -> Result<Plan, InputError> {
         let document = &self.document;
+        self.check_count(self.source.as_ref().map_or(0, |source| source.count()))?;
         let mut instances = match &self.source {
             Some(source) => source.instances(document)?,
             None => Vec::new(),
@@ -77,14 +78,7 @@ impl Experiment {
             TargetTable::give(targets, &mut instances, document)?;
         }
         self.check_budgets()?;
-        let seeds = |entry: &Entry| entry.entrant.seeds.unwrap_or(self.seeds).get();
-        let seeds = self.field.iter().map(seeds).fold(0, u64::saturating_add);
-        let count = seeds.saturating_mul(instances.len() as u64);
-        if count > MOST_RUNS {
-            let message = format!("found {count} runs, expected {MOST_RUNS} at most");
-            let help = "make several experiments of it".to_owned();
-            return Err(document.error_at(self.field_place.clone(), message, Some(help)));
-        }
+        self.check_count(instances.len() as u64)?;
         let optimisers = labelled(&self.field, &instances);
         let runs = runs(&instances, &optimisers, self.seeds, self.budget);
         let mut keys = HashSet::new();
@@ -100,6 +94,19 @@ impl Experiment {
         let plan = self.spelt_out(instances, optimisers, runs);
         check_quantities(&plan, document)?;
         Ok(plan)
+    }
+
+    /// Whether so many instances make few enough runs.
+    fn check_count(&self, instances: u64) -> Result<(), InputError> {
+        let seeds = |entry: &Entry| entry.entrant.seeds.unwrap_or(self.seeds).get();
+        let seeds = self.field.iter().map(seeds).fold(0, u64::saturating_add);
+        let count = seeds.saturating_mul(instances);
+        if count <= MOST_RUNS {
+            return Ok(());
+        }
+        let message = format!("found {count} runs, expected {MOST_RUNS} at most");
+        let help = "make several experiments of it".to_owned();
+        Err(self.document.error_at(self.field_place.clone(), message, Some(help)))
     }
 
     fn spelt_out(

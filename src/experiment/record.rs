@@ -1,9 +1,9 @@
 //! What is kept of a run, and the columns it is kept in.
 
 use std::sync::LazyLock;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
-use chrono::Utc;
+use chrono::{DateTime, Utc};
 use polars::prelude::*;
 
 use super::plan::{Plan, RunSpec};
@@ -172,7 +172,7 @@ fn row(
         runs::VERSION => [env!("CARGO_PKG_VERSION")],
         runs::COMMIT => [git_version::git_version!(args = ["--always", "--dirty"], fallback = "unknown")],
         runs::CPU => [cpu()],
-        runs::DATE => [Utc::now().to_rfc3339()],
+        runs::DATE => [DateTime::<Utc>::from(SystemTime::now()).to_rfc3339()],
     )?;
     head.hstack(&facts)?.hstack(found.columns())?.hstack(&measures)?.hstack(tail.columns())
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::caught::caught;
 use super::plan::{Plan, RunSpec};
 use super::record::{Ended, Record, Status};
-use super::store::{Store, StoreError};
+use super::store::{Damage, Store, StoreError};
 use super::subject::Subject;
 use super::value::Judgement;
 use crate::search::{Failure, Oracle, Rng, Watch};
@@ -15,6 +15,11 @@ use crate::search::{Failure, Oracle, Rng, Watch};
 pub trait Progress: Sync {
     /// A run is stored.
     fn finished(&self, run: &RunSpec, record: &Record);
+
+    /// A stored file is damaged: its batch was moved into the folder `damaged`, and its runs are missing.
+    fn set_aside(&self, damage: &Damage) {
+        let _ = damage;
+    }
 }
 
 /// Tells nobody.
@@ -29,7 +34,7 @@ const BATCHES_TO_TIDY: usize = 1_000;
 /// What is done waits no longer to be stored, however few evaluations it took.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
-/// Does those of `runs` that the store does not have, on `jobs` threads. Those that only another program can do
+/// Does those of `runs` that the store does not have, on `jobs` threads. What is damaged is set aside before. Those that only another program can do
 /// are an error once all others are done.
 ///
 /// What a run gives does not depend on the other runs. A run that the user interrupts leaves
@@ -42,6 +47,7 @@ pub fn run(
     watch: &Watch,
     progress: &dyn Progress,
 ) -> Result<(), RunError> {
+    store.set_aside()?.iter().for_each(|damage| progress.set_aside(damage));
     let stored = store.keys()?;
     let missing = runs.iter().copied().filter(|run| !stored.contains(&run.key));
     let (missing, foreign): (Vec<_>, Vec<_>) =
@@ -168,6 +174,8 @@ fn one(
     let (instance, entrant) = (&plan.instances[run.instance], &plan.optimisers[run.optimiser]);
     let space = entrant.space(instance);
     let (problem, optimiser) = (instance.subject.problem(&space)?, entrant.optimiser()?);
+    // What cannot be prepared is told of when it is evaluated.
+    let _ = caught(|| problem.prepare());
     let mut oracle = Oracle::new(&*problem, run.budget, watch);
     let started = Instant::now();
     let outcome = caught(|| optimiser.minimise(&mut oracle, &mut Rng::new(run.seed)));

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::caught::caught;
 use super::identity::Identity;
 use super::run::{Run, best_run};
+use super::schema::runs;
 use super::value::{Judgement, Quantity, Value};
 use crate::exhibit::Exhibits;
 use crate::search::{Failure, Problem};
@@ -110,6 +111,13 @@ pub trait Subject: Send + Sync {
     fn resolution(&self, lowest: f64, descent: f64) -> f64 {
         let rounding = 4.0 * f64::EPSILON * lowest.abs();
         (PRECISION * descent.min(lowest.abs().max(1.0))).max(rounding)
+    }
+
+    /// How many numbers the lists have that are stored of a run, by their columns: the best point `x`, and what
+    /// measures are lists of one length. A stored run with another number is taken for damaged.
+    fn lengths(&self, space: &str) -> Vec<(String, usize)> {
+        let variables = self.problem(space).ok().map(|problem| problem.bounds().len());
+        variables.map(|count| (runs::POINT.to_owned(), count)).into_iter().collect()
     }
 
     /// Why results on these instances of this kind are not independent of each other, if they are not.

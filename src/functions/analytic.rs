@@ -28,6 +28,7 @@
 //! ```
 
 use std::iter::repeat_with;
+use std::sync::OnceLock;
 
 use argmin_testfunctions::{
     ackley, ackley_derivative, rastrigin, rastrigin_derivative, rosenbrock, rosenbrock_derivative,
@@ -145,11 +146,12 @@ fn ellipsoid_weights(n: usize) -> impl Iterator<Item = f64> {
 #[derive(Debug, Clone)]
 pub struct Analytic {
     function: TestFunction,
+    instance: u64,
     bounds: Bounds,
     /// `x*`.
     optimum: DVector<f64>,
-    /// `R`.
-    rotation: DMatrix<f64>,
+    /// `R`, once it is asked for: with a thousand variables it takes seconds to make.
+    rotation: OnceLock<DMatrix<f64>>,
     /// `f*`.
     minimum: f64,
 }
@@ -160,16 +162,14 @@ impl Analytic {
     pub fn new(function: TestFunction, dimension: usize, instance: u64) -> Self {
         let n = dimension;
         let own = vec![function.minimiser(); n];
-        let (optimum, rotation) = if instance == 0 {
-            (DVector::from_column_slice(&own), DMatrix::identity(n, n))
-        } else {
-            placement(n, instance)
-        };
+        let optimum =
+            if instance == 0 { DVector::from_column_slice(&own) } else { shift(n, instance) };
         Self {
             function,
+            instance,
             bounds: Bounds::cube(n, [-5.0, 5.0]),
             optimum,
-            rotation,
+            rotation: OnceLock::new(),
             minimum: function.value(&own),
         }
     }
@@ -186,13 +186,13 @@ impl Analytic {
 
     /// `R`, orthogonal, `n × n`.
     pub fn rotation(&self) -> &DMatrix<f64> {
-        &self.rotation
+        self.rotation.get_or_init(|| rotation(self.bounds.len(), self.instance))
     }
 
     /// `R (x − x*) + o`.
     fn placed(&self, x: &[f64]) -> DVector<f64> {
         let offset = DVector::from_column_slice(x) - &self.optimum;
-        (&self.rotation * offset).add_scalar(self.function.minimiser())
+        (self.rotation() * offset).add_scalar(self.function.minimiser())
     }
 }
 
@@ -213,31 +213,47 @@ impl Problem for Analytic {
     fn least_cost(&self) -> Option<f64> {
         Some(0.0)
     }
+
+    fn prepare(&self) {
+        self.rotation();
+    }
 }
 
 impl Differentiable for Analytic {
     fn subgradient(&self, x: &[f64]) -> Result<Subgradient, Failure> {
         let gradient = self.function.gradient(self.placed(x).as_slice());
-        let slopes = self.rotation.tr_mul(&DVector::from_vec(gradient));
+        let slopes = self.rotation().tr_mul(&DVector::from_vec(gradient));
         Ok(Subgradient { evaluation: self.evaluate(x)?, slopes })
     }
 }
 
-/// Shift and rotation of an instance.
-fn placement(n: usize, instance: u64) -> (DVector<f64>, DMatrix<f64>) {
+/// The numbers `u_k` of an instance.
+fn units(n: usize, instance: u64) -> impl Iterator<Item = f64> {
     let mut k = instance.wrapping_mul((n + n * n) as u64);
-    let mut unit = repeat_with(move || {
+    repeat_with(move || {
         k = k.wrapping_add(1);
         weyl(k)
-    });
-    let shift = DVector::from_fn(n, |_, _| 8.0 * unit.next().unwrap_or_default() - 4.0);
+    })
+}
+
+/// `x*` of an instance but 0.
+fn shift(n: usize, instance: u64) -> DVector<f64> {
+    DVector::from_iterator(n, units(n, instance).take(n).map(|unit| 8.0 * unit - 4.0))
+}
+
+/// `R` of an instance.
+fn rotation(n: usize, instance: u64) -> DMatrix<f64> {
     let mut rotation = DMatrix::identity(n, n);
+    if instance == 0 {
+        return rotation;
+    }
+    let mut units = units(n, instance).skip(n);
     for _ in 0..n {
-        let v = DVector::from_fn(n, |_, _| 2.0 * unit.next().unwrap_or_default() - 1.0);
+        let v = DVector::from_iterator(n, units.by_ref().take(n).map(|unit| 2.0 * unit - 1.0));
         let reflected = &rotation * &v * (2.0 / v.norm_squared());
         rotation -= reflected * v.transpose();
     }
-    (shift, rotation)
+    rotation
 }
 
 /// `u_k`: within `(0, 1)` and never ½, so that no reflection's vector vanishes.

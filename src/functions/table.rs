@@ -102,6 +102,12 @@ impl Source for FunctionsFile {
         self.functions.spelt_out(document)
     }
 
+    fn count(&self) -> u64 {
+        let FunctionTable { name, dimension, instances } = &self.functions;
+        let groups = (name.get_ref().len() as u64).saturating_mul(dimension.get_ref().len() as u64);
+        groups.saturating_mul(instances.get())
+    }
+
     fn written(&self) -> Result<String, String> {
         toml::to_string(self).map_err(|error| error.to_string())
     }

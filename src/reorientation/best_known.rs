@@ -5,7 +5,9 @@
 
 use std::fmt;
 use std::sync::{Arc, LazyLock};
+use std::time::SystemTime;
 
+use chrono::{DateTime, Utc};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
@@ -108,7 +110,7 @@ impl BestKnown {
             free_form_j: None,
             coefficients: problem.rows(coefficients),
             found_by,
-            date: chrono::Utc::now().date_naive().to_string(),
+            date: DateTime::<Utc>::from(SystemTime::now()).date_naive().to_string(),
             task,
         }
     }

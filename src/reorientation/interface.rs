@@ -10,6 +10,7 @@ use super::exhibits;
 use super::fitness::Assessment;
 use super::subject::{DURATION, KIND, RESIDUAL, SAME_MOTION, TaskSubject};
 use crate::exhibit::Exhibits;
+use crate::experiment::schema::runs;
 use crate::experiment::{
     Identity, Instance, Judgement, Number, Numbers, Quantity, Results, Subject, Value, ValueKind,
 };
@@ -18,6 +19,8 @@ use crate::task::Task;
 
 /// By how much a residual that is stored may be wrong \[rad\].
 const UNCERTAIN: f64 = 1e-6;
+/// The name of the measure that is a list.
+const COEFFICIENTS: &str = "coefficients";
 
 impl Subject for TaskSubject {
     fn kind(&self) -> &'static str {
@@ -126,11 +129,18 @@ impl Subject for TaskSubject {
             Quantity::new(DURATION, ValueKind::Real, "duration [s]").shown("t_f [s]"),
             Quantity::new("penalty", ValueKind::Real, "penalty in `certified_j`"),
             Quantity::new(
-                "coefficients",
+                COEFFICIENTS,
                 ValueKind::Reals,
                 "the motion's free coefficients, joint by joint: of bumps, or what control points add to the straight path",
             ),
         ]
+    }
+
+    fn lengths(&self, space: &str) -> Vec<(String, usize)> {
+        let variables = self.formulated(space).ok().map(|problem| problem.bounds().len());
+        let coefficients = (COEFFICIENTS.to_owned(), self.reorientation().dimension());
+        let point = variables.map(|count| (runs::POINT.to_owned(), count));
+        point.into_iter().chain([coefficients]).collect()
     }
 
     fn judge(&self, space: &str, x: &[f64]) -> Result<Option<Judgement>, Failure> {

@@ -140,6 +140,34 @@ impl Sweep {
         ]
     }
 
+    /// How many instances the lists give together.
+    pub(super) fn count(&self) -> u64 {
+        let lists = [
+            self.robot.len(),
+            self.task.len(),
+            self.weight_base.len(),
+            self.rate_limit_deg_s.len(),
+            self.acceleration_limit_deg_s2.len(),
+            self.jerk_limit_deg_s3.len(),
+            self.budget.len(),
+            self.pose.len(),
+        ];
+        let product = |lengths: &[usize]| {
+            lengths.iter().fold(1, |all: u64, length| all.saturating_mul((*length).max(1) as u64))
+        };
+        let of_family = |family: &FamilyName| {
+            let own = self.sizes().into_iter().filter(|sizes| sizes.family == *family);
+            product(&own.map(|sizes| sizes.values.len()).collect::<Vec<_>>())
+        };
+        let families = match &self.family[..] {
+            // Sizes are those of the one family there is.
+            [] => product(&self.sizes().map(|sizes| sizes.values.len())),
+            families => families.iter().map(of_family).fold(0, u64::saturating_add),
+        };
+        let random = self.random_poses.as_ref().map_or(1, |random| random.get_ref().count.get());
+        product(&lists).saturating_mul(families).saturating_mul(random)
+    }
+
     fn is_empty(&self) -> bool {
         *self == Self::default()
     }

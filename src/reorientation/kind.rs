@@ -36,6 +36,10 @@ impl Source for TaskKeys {
         sweep::instances(self, document)
     }
 
+    fn count(&self) -> u64 {
+        self.sweep.count()
+    }
+
     fn written(&self) -> Result<String, String> {
         let task = self.sweep.task.is_empty().then_some(&self.task);
         let written = WrittenKeys { task, trajectory: &self.trajectory, sweep: &self.sweep };

@@ -11,7 +11,7 @@ use crate::analysis::tables::NAMES as TABLES;
 use crate::analysis::{Analysis, csv as csv_text, latex, markdown, render, summary, targets};
 use crate::exhibit::{Chart, Finding, Table};
 use crate::experiment::{Plan, Run, Store, load};
-use crate::output::{create_folder, write_file};
+use crate::output::{create_folder, remove_temporary, write_file};
 use crate::plot;
 
 /// Where tables are, beside the page.
@@ -102,6 +102,9 @@ pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, 
             files: &files(target.results),
             facts: &provenance(plan, store)?,
         };
+        for folder in [folder, &folder.join(TABLES_FOLDER), &folder.join("figures")] {
+            remove_temporary(folder);
+        }
         write_file(&path, page.html()?.as_bytes())?;
     }
     Ok(Report {

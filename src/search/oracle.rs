@@ -1,5 +1,6 @@
 //! The only door from an optimiser to a problem: it counts, keeps the best, and says when to stop.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -34,7 +35,7 @@ pub enum Stop {
 /// Shared with whoever watches a run from outside.
 #[derive(Debug, Default)]
 pub struct Watch {
-    interrupted: AtomicBool,
+    interrupted: Arc<AtomicBool>,
     evaluations: AtomicU64,
 }
 
@@ -42,6 +43,11 @@ impl Watch {
     /// Asks every run to stop at its next evaluation.
     pub fn interrupt(&self) {
         self.interrupted.store(true, Ordering::Relaxed);
+    }
+
+    /// What is true once somebody asked, to be set by a signal.
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        self.interrupted.clone()
     }
 
     /// Whether somebody asked.

@@ -32,6 +32,9 @@ pub trait Problem: Send + Sync {
         Ok(())
     }
 
+    /// Makes what all evaluations share, so that it is no part of the time of the first.
+    fn prepare(&self) {}
+
     /// The least cost in the box, where it is known.
     fn least_cost(&self) -> Option<f64> {
         None

@@ -20,6 +20,9 @@ const EXPERIMENT: &str = "name = 'brief'\nseeds = 6\nbudget = { evaluations = 20
     [[optimiser]]\nrandom = { formulation = 'scaled' }\n[[optimiser]]\nscp = { starts = 2 }\n\
     [[optimiser]]\nhybrid = { search = { de = {} } }\n";
 
+/// Exports its runs.
+const EXPORT: [&str; 6] = ["export", "calm", "--format", "ioh", "--out", "exported"];
+
 /// What holds wall time or a date.
 const TIMES: [&str; 3] = ["seconds", "seconds_in_problem", "date"];
 
@@ -64,7 +67,7 @@ fn without_times(path: &Path) -> Vec<u8> {
 }
 
 /// Starts `driftless run` and leaves it to itself; what it says goes into a file.
-fn start(folder: &Folder, log: &str, args: &[&str]) -> Child {
+pub(crate) fn start(folder: &Folder, log: &str, args: &[&str]) -> Child {
     let log = fs::File::create(folder.path().join(log)).unwrap();
     Command::new(env!("CARGO_BIN_EXE_driftless"))
         .arg("run")
@@ -245,30 +248,39 @@ fn notes_that_cannot_be_written_stop_nothing() {
     assert_eq!(Store::existing(&folder.path().join("out")).keys().unwrap().len(), 48);
 }
 
-/// A damaged file is named; without it, and without any other of its three, the runs are done again.
+/// A damaged file is named and all others are read; `run` sets it aside with the other two of its three and does their
+/// runs again.
 #[test]
 fn damaged_files_are_named_and_done_again() {
     let (folder, calm) = undisturbed();
     let out = folder.path().join("calm");
     let key = Store::existing(&out).keys().unwrap().into_iter().min().unwrap();
-    for table in ["runs", "traces", "clocks"] {
+    for (table, name) in
+        [("runs", &key), ("traces", &format!("{key}-2")), ("clocks", &format!("{key}-3"))]
+    {
         let path = out.join(table).join(format!("{key}.parquet"));
         let whole = fs::read(&path).unwrap();
-        fs::write(&path, &whole[..whole.len() / 2]).unwrap();
-        let command = if table == "clocks" { "compact" } else { "report" };
-        let output = folder.run(&[command, "calm"]);
-        assert_eq!(output.status.code(), Some(1));
-        let told = stderr(&output).replace('│', " ");
-        let told = told.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(told.contains(&format!("{table}/{key}.parquet")), "{told}");
-        assert!(told.contains("delete it to do its runs again"), "{told}");
-        fs::remove_file(&path).unwrap();
+        let half = &whole[..whole.len() / 2];
+        fs::write(&path, half).unwrap();
+        let named = format!("{table}/{key}.parquet ");
+        for args in [&["report", "calm"][..], &["status", "calm"], &["compact", "calm"], &EXPORT] {
+            let output = folder.run(args);
+            assert!(output.status.success(), "{}", stderr(&output));
+            let told = stderr(&output);
+            assert_eq!(told.matches(&named).count(), 1, "{args:?}: {told}");
+        }
+        fs::remove_dir_all(folder.path().join("exported")).unwrap();
+        let output = folder.run(&["status", "calm", "--json"]);
+        let status: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!((&status["stored"], &status["missing"]), (&47.into(), &1.into()));
+        let damaged = status["damaged"].as_array().unwrap();
+        assert_eq!(damaged.len(), 1);
+        assert!(damaged[0]["file"].as_str().unwrap().ends_with(named.trim_end()));
         let output = folder.run(&["run", "brief.toml", "--out", "calm"]);
-        assert!(
-            stderr(&output).contains("47 of 48 runs are stored already"),
-            "{}",
-            stderr(&output)
-        );
+        let told = stderr(&output);
+        assert!(told.contains("47 of 48 runs are stored already"), "{told}");
+        assert!(told.contains(&named) && told.contains("now in calm/damaged"), "{told}");
+        assert_eq!(fs::read(out.join(format!("damaged/{name}/{table}.parquet"))).unwrap(), half);
         assert_eq!(results(&out), calm);
     }
     // Remains of killed processes go when they are a day old.
@@ -318,24 +330,27 @@ fn what_is_not_understood_is_kept() {
     assert!(!folder.path().join("own/runs").exists());
 }
 
-/// Whatever byte of a table is changed, the table is read or named.
+/// Whatever byte of a file is changed, the file is named and nothing of it is read.
 #[test]
 fn changed_bytes_are_no_panic() {
     let (folder, _) = undisturbed();
     let out = folder.path().join("calm");
     assert!(folder.run(&["compact", "calm"]).status.success());
-    let mut tables = fs::read_dir(out.join("runs")).unwrap().map(|entry| entry.unwrap().path());
-    let path = tables.find(|path| path.extension().is_some_and(|e| e == "parquet")).unwrap();
-    let whole = fs::read(&path).unwrap();
-    // Most of a small table is what describes it, at its end.
-    for (k, place) in (whole.len() / 2..whole.len()).step_by(whole.len() / 80).enumerate() {
-        let mut bytes = whole.clone();
-        bytes[place] ^= [0x01, 0x27, 0x80, 0xff][k % 4];
-        fs::write(&path, bytes).unwrap();
-        let output = folder.run(&["status", "calm"]);
-        let told = stderr(&output).split_whitespace().collect::<String>();
-        let name = path.file_name().unwrap().to_str().unwrap();
-        let is_named = told.replace('│', "").contains(name);
-        assert!(output.status.success() || output.status.code() == Some(1) && is_named, "{told}");
+    for table in ["runs", "traces", "clocks"] {
+        let mut tables = fs::read_dir(out.join(table)).unwrap().map(|entry| entry.unwrap().path());
+        let path = tables.find(|path| path.extension().is_some_and(|e| e == "parquet")).unwrap();
+        let whole = fs::read(&path).unwrap();
+        for (k, place) in (0..whole.len()).step_by(whole.len() / 30).enumerate() {
+            let mut bytes = whole.clone();
+            bytes[place] ^= [0x01, 0x27, 0x80, 0xff][k % 4];
+            fs::write(&path, bytes).unwrap();
+            let output = folder.run(&["status", "calm"]);
+            assert!(output.status.success() && stdout(&output).contains("0 of 48 runs are stored"));
+            let expected =
+                format!("{} does not match its checksum", path.file_name().unwrap().display());
+            assert!(stderr(&output).contains(&expected), "{}", stderr(&output));
+        }
+        fs::write(&path, whole).unwrap();
     }
+    assert!(stdout(&folder.run(&["status", "calm"])).contains("48 of 48 runs are stored"));
 }

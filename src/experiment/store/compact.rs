@@ -1,16 +1,16 @@
 //! Many small files into few large ones.
 
 use std::collections::HashSet;
-use std::fs::{self, DirEntry, File, TryLockError};
-use std::time::{Duration, SystemTime};
+use std::fs::{File, TryLockError};
 
 use polars::prelude::*;
 
-use super::read::{is_batch, only};
-use super::stack::Stack;
-use super::{SEVERAL, Store, StoreError, TABLES, io_error};
-use crate::digest::digest;
-use crate::output::sync_folder;
+use super::check::Contents;
+use super::damage::Flaw;
+use super::name::{is_batch, new_name};
+use super::stack::{Stack, only};
+use super::{Store, StoreError, TABLES, io_error};
+use crate::output::{remove_old, sync_folder};
 use crate::search::Watch;
 
 /// A merged batch has no more runs…
@@ -19,9 +19,6 @@ pub(super) const MOST_RUNS: usize = 10_000;
 const MOST_ROWS: usize = 1_000_000;
 /// More batches than that are worth a compaction.
 const MANY: usize = 1_000;
-
-/// Remains of that age are nobody's.
-const OLD: Duration = Duration::from_hours(24);
 
 /// What a compaction did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,42 +69,47 @@ impl Store {
     /// where another process is at it.
     pub fn compact(&self, watch: &Watch) -> Result<Option<Compaction>, StoreError> {
         let before = self.batch_count()?;
-        let Some(_lock) = self.try_lock()? else { return Ok(None) };
+        let Some(_lock) = self.lock(None)? else { return Ok(None) };
         self.merge(|_| true, watch)?;
         self.remove_remains()?;
         Ok(Some(Compaction { before, after: self.batch_count()? }))
     }
 
     /// Merges batches where there are so many that reading them would take long, unless another process
-    /// is at it.
+    /// is at it, or the file system has no locks: then many files are better than lost ones.
     pub(in crate::experiment) fn tidy(&self, watch: &Watch) -> Result<(), StoreError> {
-        if self.batch_count()? > MANY {
-            self.compact(watch)?;
+        if self.batch_count()? > MANY
+            && let Ok(Some(_lock)) = self.lock(None)
+        {
+            self.merge(|_| true, watch)?;
+            self.remove_remains()?;
         }
         Ok(())
     }
 
-    /// Removes runs.
-    pub fn remove(&self, keys: &HashSet<&str>) -> Result<(), StoreError> {
-        let lock = self.lock_file()?;
-        lock.lock().map_err(|source| io_error("lock", &self.folder, source))?;
+    /// Removes runs. Where another process is merging files, `waiting` is told before it is waited for.
+    pub fn remove(&self, keys: &HashSet<&str>, waiting: &dyn Fn()) -> Result<(), StoreError> {
+        let _lock = self.lock(Some(waiting))?;
         self.merge(|key| !keys.contains(key), &Watch::default())
     }
 
-    /// Held by whoever removes batches, as long as the file is open.
-    fn lock_file(&self) -> Result<File, StoreError> {
+    /// A lock that is held by whoever removes batches, as long as the file is open. Where another process has it:
+    /// none, or, after a word to `waiting`, when that process is done.
+    pub(super) fn lock(&self, waiting: Option<&dyn Fn()>) -> Result<Option<File>, StoreError> {
         let path = self.folder.join(".compacting");
         let mut options = File::options();
         options.create(true).write(true).truncate(false);
-        options.open(&path).map_err(|source| io_error("open", &path, source))
-    }
-
-    fn try_lock(&self) -> Result<Option<File>, StoreError> {
-        let lock = self.lock_file()?;
-        match lock.try_lock() {
-            Ok(()) => Ok(Some(lock)),
-            Err(TryLockError::WouldBlock) => Ok(None),
-            Err(TryLockError::Error(source)) => Err(io_error("lock", &self.folder, source)),
+        let lock = options.open(&path).map_err(|source| io_error("open", &path, source))?;
+        let error = |source| io_error("lock", &self.folder, source);
+        match ((self.try_lock)(&lock), waiting) {
+            (Ok(()), _) => Ok(Some(lock)),
+            (Err(TryLockError::WouldBlock), None) => Ok(None),
+            (Err(TryLockError::WouldBlock), Some(waiting)) => {
+                waiting();
+                lock.lock().map_err(error)?;
+                Ok(Some(lock))
+            }
+            (Err(TryLockError::Error(source)), _) => Err(error(source)),
         }
     }
 
@@ -122,7 +124,7 @@ impl Store {
             if watch.is_interrupted() {
                 return Ok(());
             }
-            let Some((keys, tables)) = self.small(&batch, &keep)? else { continue };
+            let Some((keys, tables)) = self.small(&batch, &keep) else { continue };
             let stays = |key: &str| keep(key) && !mine.contains(key);
             let lacks = !keys.iter().all(|key| stays(key));
             let (keys, tables) = if lacks {
@@ -151,48 +153,39 @@ impl Store {
     /// some of the folders only. What is younger may still be at work.
     fn remove_remains(&self) -> Result<(), StoreError> {
         let batches = self.batches()?;
-        let is_old = |entry: &DirEntry| {
-            let modified = entry.metadata().and_then(|metadata| metadata.modified());
-            modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > OLD))
+        let is_part = |batch: &str| is_batch(batch) && !batches.contains(batch);
+        let is_remains = |name: &str| {
+            name.starts_with(".tmp") || name.strip_suffix(".parquet").is_some_and(is_part)
         };
         for table in TABLES {
-            let folder = self.folder.join(table);
-            let entries = fs::read_dir(&folder).map_err(|e| io_error("list", &folder, e))?;
-            for entry in entries.flatten() {
-                let name = entry.file_name();
-                let name = name.to_string_lossy();
-                let is_part = |batch: &str| is_batch(batch) && !batches.contains(batch);
-                let remains =
-                    name.starts_with(".tmp") || name.strip_suffix(".parquet").is_some_and(is_part);
-                if remains && is_old(&entry) {
-                    // What cannot be removed harms nobody.
-                    let _ = fs::remove_file(entry.path());
-                }
-            }
+            remove_old(&self.folder.join(table), is_remains);
         }
         Ok(())
     }
 
     /// Keys and tables of a batch that is small or holds what is not to be kept; none of another, nor of
-    /// one that has just vanished.
-    #[expect(clippy::type_complexity, reason = "a batch's keys and tables")]
+    /// one that has just vanished or is damaged.
     fn small(
         &self,
         batch: &str,
         keep: impl Fn(&str) -> bool,
-    ) -> Result<Option<(Vec<String>, [DataFrame; 3])>, StoreError> {
+    ) -> Option<(Vec<String>, [DataFrame; 3])> {
         let read = || {
-            let keys = self.keys_of(batch)?;
-            let is_large = keys.len() >= self.most_runs || self.trace_rows(batch)? >= MOST_ROWS;
+            let Contents { keys, trace_rows } = &*self.contents(batch)?;
+            let is_large = keys.len() >= self.most_runs || *trace_rows >= MOST_ROWS;
             if is_large && keys.iter().all(|key| keep(key)) {
                 return Ok(None);
             }
-            let [traces, clocks, runs] = TABLES.map(|table| self.read_file(table, batch, None));
-            Ok(Some((keys, [traces?, clocks?, runs?])))
+            let [traces, clocks, runs] = TABLES.map(|table| self.read_file(table, batch));
+            Ok(Some((keys.clone(), [traces?, clocks?, runs?])))
         };
         match read() {
-            Err(error) if self.has_vanished(&error, batch) => Ok(None),
-            outcome => outcome,
+            Ok(small) => small,
+            Err(Flaw::Damaged(damage)) => {
+                self.note(batch, damage);
+                None
+            }
+            Err(Flaw::Gone) => None,
         }
     }
 
@@ -211,30 +204,28 @@ impl Store {
     }
 }
 
-/// A name that no other process gives, nor this one another time: one may remove what another writes.
-fn new_name(keys: &[String]) -> String {
-    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-    let unique = format!("{} {} {}", std::process::id(), now.as_nanos(), keys.join(" "));
-    format!("{SEVERAL}{}", digest(&unique))
-}
-
 #[cfg(test)]
 mod tests {
+    use std::cell::RefCell;
+    use std::fs;
+
     use super::*;
-    use crate::experiment::store::batch_name;
+    use crate::experiment::schema::FORMAT;
+    use crate::experiment::store::name::batch_name;
     use crate::search::Rng;
 
     fn key(i: usize) -> String {
         format!("{i:016x}")
     }
 
-    /// Stores runs of one row a table.
+    /// Stores runs of one row a table, in a format of which only the keys are looked at.
     fn write(store: &Store, runs: &[usize]) {
         let keys: Vec<String> = runs.iter().map(|&run| key(run)).collect();
         let names: Vec<&str> = keys.iter().map(String::as_str).collect();
         let tables = [0, 1, 2].map(|_| {
             let mut stack = Stack::default();
-            stack.push(df!("key" => &keys, "run" => runs.iter().map(|&r| r as u64).collect::<Vec<_>>()).unwrap()).unwrap();
+            let format = vec![FORMAT + 1; runs.len()];
+            stack.push(df!("key" => &keys, "format" => format).unwrap()).unwrap();
             stack
         });
         store.write_batch(&batch_name(&names), tables).unwrap();
@@ -247,6 +238,43 @@ mod tests {
             let frame = store.read(table, keys.iter().map(String::as_str)).unwrap();
             assert_eq!(frame.height(), keys.len(), "{table}");
         }
+    }
+
+    /// Without locks nothing is removed: many batches stay many, and runs that should go are an error.
+    #[test]
+    fn without_locks_nothing_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let none = |_: &File| {
+            // What Linux says where a file system has none.
+            let error = std::io::Error::from(std::io::ErrorKind::Unsupported);
+            Err(TryLockError::Error(error))
+        };
+        let store = Store { try_lock: none, ..Store::open(folder.path()).unwrap() };
+        (0..=MANY).for_each(|run| write(&store, &[run]));
+        store.tidy(&Watch::default()).unwrap();
+        assert_eq!(store.batch_count().unwrap(), MANY + 1);
+        let error = store.remove(&HashSet::from([&*key(0)]), &|| {}).unwrap_err();
+        assert!(error.to_string().starts_with("cannot lock"), "{error}");
+        assert!(store.compact(&Watch::default()).is_err());
+        check(&store, &(0..=MANY).collect());
+        // A batch with a damaged file is set aside all the same: that loses nothing.
+        fs::write(store.path("clocks", &key(7)), "").unwrap();
+        assert_eq!(store.set_aside().unwrap().len(), 1);
+        check(&store, &(0..=MANY).filter(|run| *run != 7).collect());
+    }
+
+    /// Whoever removes runs says that it waits for another, and then does.
+    #[test]
+    fn waiting_for_a_lock_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        write(&store, &[1]);
+        let lock = RefCell::new(store.lock(None).unwrap());
+        assert!(lock.borrow().is_some() && store.compact(&Watch::default()).unwrap().is_none());
+        let waiting = || drop(lock.take());
+        store.remove(&HashSet::from([&*key(1)]), &waiting).unwrap();
+        assert!(lock.borrow().is_none());
+        check(&store, &HashSet::new());
     }
 
     /// Batches of all sizes, many with runs that others have too, as compactions that were killed
@@ -269,7 +297,7 @@ mod tests {
                 if rng.index(3) == 0 {
                     let gone: Vec<usize> = (0..3).map(|_| rng.index(30)).collect();
                     let keys: Vec<String> = gone.iter().map(|&run| key(run)).collect();
-                    store.remove(&keys.iter().map(String::as_str).collect()).unwrap();
+                    store.remove(&keys.iter().map(String::as_str).collect(), &|| {}).unwrap();
                     expected.retain(|run| !gone.contains(run));
                 } else {
                     store.compact(&Watch::default()).unwrap().unwrap();

@@ -9,24 +9,37 @@
 //! A batch is one run, named by its key, or several; it is there once it is in all three folders.
 //! Processes need not know of each other: batches are only added, but for
 //! [`compact`](Store::compact), which adds what it merges before it removes it. A run may therefore
-//! stand in two batches; readers take the first.
+//! stand in two batches; readers take the first. A batch of which a file is damaged is left out.
 
+mod aside;
+mod check;
 mod compact;
+mod damage;
 mod listed;
+mod name;
 mod read;
+mod seal;
 mod stack;
 
-use std::fs;
+use std::collections::HashMap;
+use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 
 use polars::prelude::*;
 
 pub use compact::Compaction;
+pub use damage::Damage;
 
+use self::check::Lengths;
+use self::damage::Known;
+use self::name::batch_name;
+use self::seal::sealed;
 use self::stack::Stack;
+use super::caught::caught;
+use super::plan::Plan;
 use super::record::Record;
-use crate::digest::digest;
 use crate::output::{FileError, create_folder, write_file};
 
 /// The tables, in the order in which a batch's are written.
@@ -38,6 +51,12 @@ pub struct Store {
     folder: PathBuf,
     /// A merged batch has no more runs than that.
     most_runs: usize,
+    /// Locks a file against other processes.
+    try_lock: fn(&File) -> Result<(), TryLockError>,
+    /// How long lists of runs should be.
+    lengths: Arc<Lengths>,
+    /// What is known of batches.
+    known: Arc<Mutex<Known>>,
 }
 
 /// A result that could not be written or read.
@@ -46,14 +65,9 @@ pub enum StoreError {
     /// The file system said no.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A table is damaged.
-    #[error("cannot read {}; delete it to do its runs again", .path.display())]
-    Damaged {
-        /// The table.
-        path: PathBuf,
-        /// What came of reading it.
-        source: Cause,
-    },
+    /// A table may be whole and cannot be read.
+    #[error("{0}; until it can be, it is not known which runs are missing")]
+    Unreadable(Damage),
     /// A record could not be made into a table, or a table not be looked through.
     #[error("cannot make a table of a run")]
     Record(#[source] Cause),
@@ -67,11 +81,6 @@ impl From<PolarsError> for StoreError {
     fn from(error: PolarsError) -> Self {
         Self::Record(error.into())
     }
-}
-
-/// Makes an error of a table an error of its file.
-fn damaged(path: PathBuf) -> impl FnOnce(PolarsError) -> StoreError {
-    move |error| StoreError::Damaged { path, source: error.into() }
 }
 
 impl Store {
@@ -90,7 +99,28 @@ impl Store {
 
     /// A folder to read; where it has no tables there are no runs.
     pub fn existing(folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), most_runs: compact::MOST_RUNS }
+        Self {
+            folder: folder.to_owned(),
+            most_runs: compact::MOST_RUNS,
+            try_lock: File::try_lock,
+            lengths: Arc::default(),
+            known: Arc::default(),
+        }
+    }
+
+    /// The same, knowing how long the lists of a plan's runs should be.
+    #[must_use]
+    pub(in crate::experiment) fn of(self, plan: &Plan) -> Self {
+        let mut lengths = HashMap::new();
+        let mut of_space: HashMap<(usize, String), Arc<[(String, usize)]>> = HashMap::new();
+        for run in &plan.runs {
+            let instance = &plan.instances[run.instance];
+            let space = plan.optimisers[run.optimiser].space(instance);
+            let own = of_space.entry((run.instance, space));
+            let own = own.or_insert_with_key(|(_, space)| instance.subject.lengths(space).into());
+            lengths.insert(run.key.clone(), own.clone());
+        }
+        Self { lengths: Arc::new(lengths), ..self }
     }
 
     /// Stores runs, all of them or none.
@@ -108,6 +138,7 @@ impl Store {
 
     /// Writes a batch's tables, in the order of [`TABLES`].
     fn write_batch(&self, batch: &str, tables: [Stack; 3]) -> Result<(), StoreError> {
+        self.forget(batch);
         for (table, stack) in TABLES.iter().zip(tables) {
             write_table(&self.path(table, batch), stack.into_table()?)?;
         }
@@ -116,6 +147,7 @@ impl Store {
 
     /// Removes a batch's files, in the opposite order to writing: what is half removed counts as not there.
     fn remove_batch(&self, batch: &str) -> Result<(), StoreError> {
+        self.forget(batch);
         for table in TABLES.iter().rev() {
             let path = self.path(table, batch);
             match fs::remove_file(&path) {
@@ -133,21 +165,16 @@ impl Store {
     }
 }
 
-/// What the name of a batch of several runs begins with.
-const SEVERAL: &str = "batch-";
-
-/// The key of the only run, or a name of its own.
-fn batch_name(keys: &[&str]) -> String {
-    match keys {
-        [key] => (*key).to_owned(),
-        _ => format!("{SEVERAL}{}", digest(&keys.join(" "))),
-    }
+/// Has polars start its threads, if it has not, and says whether it could: elsewhere it would panic.
+pub(crate) fn start_threads() -> bool {
+    let sorted = caught(|| Series::new("".into(), [1, 0]).sort(SortOptions::default()));
+    matches!(sorted, Ok(Ok(_)))
 }
 
 /// Tables of fewer rows are not compressed: there is little to gain, and reading takes longer.
 const ROWS_TO_COMPRESS: usize = 1_000;
 
-/// Writes a table as Parquet, whole or not at all.
+/// Writes a table as Parquet with a checksum, whole or not at all.
 fn write_table(path: &Path, mut frame: DataFrame) -> Result<(), StoreError> {
     let compression = if frame.height() < ROWS_TO_COMPRESS {
         ParquetCompression::Uncompressed
@@ -156,7 +183,7 @@ fn write_table(path: &Path, mut frame: DataFrame) -> Result<(), StoreError> {
     };
     let mut bytes = Vec::new();
     ParquetWriter::new(&mut bytes).with_compression(compression).finish(&mut frame)?;
-    Ok(write_file(path, &bytes)?)
+    Ok(write_file(path, &sealed(bytes))?)
 }
 
 fn io_error(action: &'static str, path: &Path, source: io::Error) -> StoreError {

@@ -1,23 +1,32 @@
 //! Reading while others write, merge and remove.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
-use std::fs::{self, File};
-use std::io;
-use std::path::PathBuf;
+use std::fs;
+use std::io::{self, Cursor};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 use polars::prelude::*;
 
-use super::stack::Stack;
-use super::{SEVERAL, Store, StoreError, TABLES, damaged, io_error};
+use super::check::{Contents, check};
+use super::damage::{Damage, Flaw};
+use super::name::is_batch;
+use super::seal::{Seal, seal_of};
+use super::stack::{Stack, only};
+use super::{Store, StoreError, TABLES, io_error};
 use crate::experiment::caught::caught;
 use crate::experiment::schema::runs;
+
+/// Fewer batches than that are not worth a thread of their own.
+const BATCHES_PER_THREAD: usize = 20;
 
 impl Store {
     /// The keys of all stored runs.
     pub fn keys(&self) -> Result<HashSet<String>, StoreError> {
         let mut keys = HashSet::new();
-        self.visit_batches(|batch| {
-            keys.extend(self.keys_of(batch)?);
+        self.visit_batches(|_, contents| {
+            keys.extend(contents.keys.iter().cloned());
             Ok(())
         })?;
         Ok(keys)
@@ -30,7 +39,7 @@ impl Store {
 
     /// Shows one table's `columns` of the `wanted` runs to the visitor, batch by batch; all columns where none are named.
     /// `optional` columns are null where a batch has none of the name. No run is shown
-    /// twice, and none that is stored is left out, though others write and compact meanwhile.
+    /// twice, and none that is stored in a batch without damage is left out, though others write and compact meanwhile.
     #[doc(hidden)]
     pub fn visit(
         &self,
@@ -41,20 +50,21 @@ impl Store {
         mut visitor: impl FnMut(&DataFrame) -> PolarsResult<()>,
     ) -> Result<(), StoreError> {
         let mut seen = HashSet::new();
-        self.visit_batches(|batch| {
-            let keys = self.keys_of(batch)?;
-            let count = keys.len();
-            let new: HashSet<String> =
-                keys.into_iter().filter(|key| wanted(key) && !seen.contains(key)).collect();
+        self.visit_batches(|batch, Contents { keys, .. }| {
+            let is_new = |key: &&String| wanted(key) && !seen.contains(*key);
+            let new: HashSet<&str> = keys.iter().filter(is_new).map(String::as_str).collect();
             if new.is_empty() {
                 return Ok(());
             }
             let mut frame = self.read_columns(table, batch, columns, optional)?;
-            if new.len() < count {
-                frame = only(&frame, |key| new.contains(key))?;
-            }
-            visitor(&frame).map_err(damaged(self.path(table, batch)))?;
-            seen.extend(new);
+            let shown = if new.len() < keys.len() {
+                only(&frame, |key| new.contains(key)).map(|own| frame = own)
+            } else {
+                Ok(())
+            };
+            let shown = shown.and_then(|()| visitor(&frame));
+            shown.map_err(|error| self.damaged_file(table, batch, &error.to_string()))?;
+            seen.extend(new.into_iter().map(str::to_owned));
             Ok(())
         })
     }
@@ -81,26 +91,73 @@ impl Store {
         Ok(all.take(&IdxCa::from_vec("order".into(), order))?)
     }
 
-    /// Does something with every batch. Where one vanishes meanwhile, its runs are in another: all are gone
-    /// through again.
+    /// Does something with every batch that can be used. Where one vanishes meanwhile, its runs are in another: all are
+    /// gone through again.
     fn visit_batches(
         &self,
-        mut visitor: impl FnMut(&str) -> Result<(), StoreError>,
+        mut visitor: impl FnMut(&str, &Contents) -> Result<(), Flaw>,
     ) -> Result<(), StoreError> {
         'again: loop {
-            for batch in self.batches()? {
-                match visitor(&batch) {
-                    Err(error) if self.has_vanished(&error, &batch) => continue 'again,
-                    outcome => outcome?,
+            let batches = self.batches()?;
+            self.look_through(&batches);
+            for batch in batches {
+                match self.contents(&batch).and_then(|contents| visitor(&batch, &contents)) {
+                    Ok(()) => {}
+                    Err(Flaw::Damaged(damage)) => self.note(&batch, damage),
+                    Err(Flaw::Gone) => {
+                        self.forget(&batch);
+                        continue 'again;
+                    }
                 }
             }
             return Ok(());
         }
     }
 
-    pub(super) fn has_vanished(&self, error: &StoreError, batch: &str) -> bool {
-        let is_gone = |table: &&str| fs::symlink_metadata(self.path(table, batch)).is_err();
-        matches!(error, StoreError::Damaged { .. }) && TABLES.iter().any(is_gone)
+    /// Looks through many batches at a time; what comes of it is known from then on.
+    fn look_through(&self, batches: &BTreeSet<String>) {
+        let known = self.known();
+        let is_new = |batch: &&String| {
+            !known.sound.contains_key(*batch) && !known.damaged.contains_key(*batch)
+        };
+        let new: Vec<&String> = batches.iter().filter(is_new).collect();
+        drop(known);
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(batch) = new.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if let Err(Flaw::Damaged(damage)) = self.contents(batch) {
+                    self.note(batch, damage);
+                }
+            }
+        };
+        thread::scope(|scope| {
+            let threads = thread::available_parallelism().map_or(1, usize::from);
+            for _ in 1..threads.min(new.len() / BATCHES_PER_THREAD) {
+                // Where there are no more threads, those that there are do all.
+                let _ = thread::Builder::new().spawn_scoped(scope, work);
+            }
+            work();
+        });
+    }
+
+    /// What a batch holds. The first time all of it is read and looked through.
+    pub(super) fn contents(&self, batch: &str) -> Result<Arc<Contents>, Flaw> {
+        let known = self.known();
+        if let Some(contents) = known.sound.get(batch) {
+            return Ok(contents.clone());
+        }
+        if let Some(damage) = known.damaged.get(batch) {
+            return Err(Flaw::Damaged(damage.clone()));
+        }
+        drop(known);
+        let [traces, clocks, runs] = TABLES.map(|table| self.read_file(table, batch));
+        let tables = [traces?, clocks?, runs?];
+        let contents = caught(|| check(batch, &tables, &self.lengths))
+            .map_err(|panic| self.unreadable_file("runs", batch, &panic))?
+            .map_err(|(table, reason)| self.damaged_file(table, batch, &reason))?;
+        let contents = Arc::new(contents);
+        self.known().sound.insert(batch.to_owned(), contents.clone());
+        Ok(contents)
     }
 
     /// The names of all batches. A folder that changes while it is listed may show neither what is
@@ -145,86 +202,84 @@ impl Store {
         }
     }
 
-    /// The keys of a batch's runs.
-    pub(super) fn keys_of(&self, batch: &str) -> Result<Vec<String>, StoreError> {
-        if is_key(batch) {
-            return Ok(vec![batch.to_owned()]);
-        }
-        let frame = self.read_file("runs", batch, Some(&[runs::KEY]))?;
-        Ok(frame.column(runs::KEY)?.str()?.iter().flatten().map(str::to_owned).collect())
-    }
-
-    /// Number of rows of a batch's traces.
-    pub(super) fn trace_rows(&self, batch: &str) -> Result<usize, StoreError> {
-        parquet(self.path("traces", batch), |file| ParquetReader::new(file).num_rows())
-    }
-
-    /// Reads some columns of a batch's file of a table; optional ones that it lacks are null.
+    /// Reads some columns of a batch's file of a table, all where none are named; optional ones that it lacks are null.
     fn read_columns(
         &self,
         table: &str,
         batch: &str,
         columns: &[&str],
         optional: &[&str],
-    ) -> Result<DataFrame, StoreError> {
-        if optional.is_empty() {
-            return self.read_file(table, batch, Some(columns));
-        }
-        let schema = parquet(self.path(table, batch), |file| ParquetReader::new(file).schema())?;
-        let (has, lacks): (Vec<&str>, Vec<&str>) =
-            optional.iter().partition(|name| schema.get(name).is_some());
-        let mut frame = self.read_file(table, batch, Some(&[columns, &has].concat()))?;
-        for name in lacks {
-            let height = frame.height();
-            frame.with_column(Float64Chunked::full_null(name.into(), height).into_column())?;
-        }
-        Ok(frame)
-    }
-
-    /// Reads a batch's file of a table: some columns, or, where none are named, all.
-    pub(super) fn read_file(
-        &self,
-        table: &str,
-        batch: &str,
-        columns: Option<&[&str]>,
-    ) -> Result<DataFrame, StoreError> {
-        let columns = columns.filter(|columns| !columns.is_empty());
-        let columns = columns.map(|names| names.iter().map(|&name| name.to_owned()).collect());
-        parquet(self.path(table, batch), |file| {
-            ParquetReader::new(file)
-                .with_columns(columns)
+    ) -> Result<DataFrame, Flaw> {
+        let (bytes, seal) = self.bytes(table, batch)?;
+        let read = || {
+            let mut reader = ParquetReader::new(Cursor::new(&bytes));
+            let schema = reader.schema()?;
+            let (has, lacks): (Vec<&str>, Vec<&str>) =
+                optional.iter().partition(|name| schema.get(name).is_some());
+            let names = columns.iter().chain(&has).map(|&name| name.to_owned()).collect();
+            let mut frame = reader
+                .with_columns((!columns.is_empty()).then_some(names))
                 .read_parallel(ParallelStrategy::None)
-                .finish()
+                .finish()?;
+            for name in lacks {
+                let height = frame.height();
+                frame.with_column(Float64Chunked::full_null(name.into(), height).into_column())?;
+            }
+            Ok(frame)
+        };
+        let found: Result<DataFrame, String> = match caught(read) {
+            Ok(outcome) => outcome.map_err(|error: PolarsError| error.to_string()),
+            Err(panic) => Err(panic),
+        };
+        // What is as it was written is not damaged, whatever keeps polars from reading it.
+        found.map_err(|error| match seal {
+            Seal::Whole => self.unreadable_file(table, batch, &error),
+            _ => self.damaged_file(table, batch, &format!("is no table that can be read: {error}")),
         })
     }
-}
 
-/// Reads something of a file. Where it is damaged, polars may panic.
-fn parquet<T>(path: PathBuf, read: impl FnOnce(File) -> PolarsResult<T>) -> Result<T, StoreError> {
-    let file = match File::open(&path) {
-        Ok(file) => file,
-        Err(error) => return Err(damaged(path)(error.into())),
-    };
-    match caught(|| read(file)) {
-        Ok(outcome) => outcome.map_err(damaged(path)),
-        Err(panic) => Err(damaged(path)(polars_err!(ComputeError: "{panic}"))),
+    /// Reads a batch's file of a table.
+    pub(super) fn read_file(&self, table: &str, batch: &str) -> Result<DataFrame, Flaw> {
+        self.read_columns(table, batch, &[], &[])
     }
-}
 
-/// Whether a batch of this name is one run.
-fn is_key(batch: &str) -> bool {
-    !batch.starts_with(SEVERAL)
-}
+    /// The bytes of a batch's file of a table, as far as its checksum tells as they were written.
+    fn bytes(&self, table: &str, batch: &str) -> Result<(Vec<u8>, Seal), Flaw> {
+        let path = self.path(table, batch);
+        let damaged = |reason| Err(self.damaged_file(table, batch, reason));
+        let failed = |error: io::Error| match error.kind() {
+            io::ErrorKind::NotFound => Flaw::Gone,
+            _ => self.unreadable_file(table, batch, &error.to_string()),
+        };
+        let entry = fs::symlink_metadata(&path).map_err(failed)?;
+        match fs::metadata(&path) {
+            // What is not a file may block whoever opens it.
+            Ok(found) if !found.is_file() => damaged("is not a file"),
+            Ok(_) => {
+                let bytes = fs::read(&path).map_err(failed)?;
+                match seal_of(&bytes) {
+                    Seal::Broken => damaged("does not match its checksum"),
+                    seal => Ok((bytes, seal)),
+                }
+            }
+            Err(error) if entry.is_symlink() && error.kind() != io::ErrorKind::PermissionDenied => {
+                damaged("is a link that leads nowhere")
+            }
+            Err(error) => Err(failed(error)),
+        }
+    }
 
-/// Whether a file's name is that of a batch; others are none of ours.
-pub(super) fn is_batch(name: &str) -> bool {
-    let digits = name.strip_prefix(SEVERAL).unwrap_or(name);
-    digits.len() == 16 && digits.bytes().all(|byte| byte.is_ascii_hexdigit())
-}
+    fn damaged_file(&self, table: &str, batch: &str, reason: &str) -> Flaw {
+        let path = self.path(table, batch);
+        Flaw::Damaged(Damage { path, reason: reason.to_owned(), may_be_whole: false })
+    }
 
-/// The rows of some runs.
-pub(super) fn only(frame: &DataFrame, wanted: impl Fn(&str) -> bool) -> PolarsResult<DataFrame> {
-    let keys = frame.column(runs::KEY)?.str()?;
-    let mask: BooleanChunked = keys.iter().map(|key| Some(key.is_some_and(&wanted))).collect();
-    frame.filter(&mask)
+    fn unreadable_file(&self, table: &str, batch: &str, error: &str) -> Flaw {
+        let path = self.path(table, batch);
+        Flaw::Damaged(Damage {
+            path,
+            reason: format!("cannot be read: {error}"),
+            may_be_whole: true,
+        })
+    }
 }

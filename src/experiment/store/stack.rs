@@ -2,6 +2,8 @@
 
 use polars::prelude::*;
 
+use crate::experiment::schema::runs;
+
 /// So many tables become one: each appended table looks through all those before it.
 const PARTS: usize = 100;
 
@@ -62,4 +64,11 @@ fn complete(table: &mut DataFrame, other: &Schema) -> PolarsResult<()> {
         }
     }
     Ok(())
+}
+
+/// The rows of some runs.
+pub(super) fn only(frame: &DataFrame, wanted: impl Fn(&str) -> bool) -> PolarsResult<DataFrame> {
+    let keys = frame.column(runs::KEY)?.str()?;
+    let mask: BooleanChunked = keys.iter().map(|key| Some(key.is_some_and(&wanted))).collect();
+    frame.filter(&mask)
 }

@@ -10,7 +10,7 @@ mod parquet;
 use std::path::Path;
 
 use super::motion::Motion;
-use crate::output::{FileError, write_file};
+use crate::output::{FileError, folder_of, remove_temporary, write_file};
 #[cfg(feature = "harness")]
 pub use motions::write_motions;
 
@@ -83,6 +83,7 @@ pub fn write_motion(path: &Path, format: MotionFormat, motion: &Motion) -> Resul
             return Err(ExportError::Format { format: "Parquet", reason });
         }
     };
+    remove_temporary(folder_of(path));
     Ok(write_file(path, &bytes)?)
 }
 

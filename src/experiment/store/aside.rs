@@ -1,0 +1,68 @@
+//! Damaged batches out of the way.
+
+use std::fs;
+use std::io;
+
+use super::damage::{Damage, Flaw};
+use super::{Store, StoreError, TABLES, io_error};
+use crate::output::create_folder;
+
+/// The folder of batches that were set aside; in it each has a folder of its own.
+const DAMAGED: &str = "damaged";
+
+impl Store {
+    /// Moves every batch with a damaged file into a folder below `damaged/`, for its runs to be done again, and says
+    /// which files are damaged. One that may be whole and cannot be read is an error: its runs may be there.
+    pub(in crate::experiment) fn set_aside(&self) -> Result<Vec<Damage>, StoreError> {
+        self.keys()?;
+        let batches: Vec<String> = self.known().damaged.keys().cloned().collect();
+        if batches.is_empty() {
+            return Ok(Vec::new());
+        }
+        // Another process may have set one aside and done it again since it was looked at. Without a lock that may
+        // still happen between the second look and the move, and would lose nothing: the run is done once more.
+        let _lock = self.lock(Some(&|| {}));
+        let mut moved = Vec::new();
+        for batch in batches {
+            self.forget(&batch);
+            match self.contents(&batch) {
+                Err(Flaw::Damaged(damage)) if damage.may_be_whole => {
+                    return Err(StoreError::Unreadable(damage));
+                }
+                Err(Flaw::Damaged(damage)) => {
+                    self.move_aside(&batch)?;
+                    moved.push(damage);
+                }
+                Ok(_) | Err(Flaw::Gone) => {}
+            }
+        }
+        Ok(moved)
+    }
+
+    /// Moves a batch's files into a new folder, in the order in which they would be removed.
+    fn move_aside(&self, batch: &str) -> Result<(), StoreError> {
+        let all = self.folder.join(DAMAGED);
+        create_folder(&all)?;
+        let mut folder = all.join(batch);
+        for n in 2.. {
+            match fs::create_dir(&folder) {
+                Ok(()) => break,
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
+                    folder = all.join(format!("{batch}-{n}"));
+                }
+                Err(e) => return Err(io_error("create", &folder, e)),
+            }
+        }
+        for table in TABLES.iter().rev() {
+            let path = self.path(table, batch);
+            match fs::rename(&path, folder.join(format!("{table}.parquet"))) {
+                Err(e) if e.kind() != io::ErrorKind::NotFound => {
+                    return Err(io_error("move", &path, e));
+                }
+                _ => {}
+            }
+        }
+        self.forget(batch);
+        Ok(())
+    }
+}
