@@ -19,7 +19,7 @@ fn report(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     for part in ["tables", "figures"] {
         for entry in fs::read_dir(folder.join(part)).unwrap().map(Result::unwrap) {
             let name = format!("{part}/{}", entry.file_name().display());
-            if !name.ends_with(".pdf") {
+            if entry.path().extension().is_none_or(|extension| extension != "pdf") {
                 files.insert(name, fs::read(entry.path()).unwrap());
             }
         }
