@@ -146,7 +146,9 @@ fn files_without_a_checksum_are_read() {
     let folder = create(temporary.path(), FEW);
     run(&folder);
     let whole = tables(&folder);
-    files(temporary.path()).iter().for_each(|file| rewritten(file, |frame| frame));
+    for file in files(temporary.path()) {
+        rewritten(&file, |frame| frame);
+    }
     let folder = open(temporary.path());
     assert_eq!(tables(&folder), whole);
     assert_eq!(run(&folder), []);

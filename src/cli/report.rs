@@ -36,6 +36,11 @@ impl Report {
             target = target.replacing();
         }
         match report(&folder, &target)? {
+            // What is damaged was told; the report from before has what it held.
+            Some(kept) if !folder.store.damaged().is_empty() => {
+                note!("note: {kept}");
+                Ok(())
+            }
             Some(kept) => Err(CliError::Kept(kept)),
             None => Ok(()),
         }

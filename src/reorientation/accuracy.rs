@@ -2,9 +2,6 @@
 
 use serde::Serialize;
 
-use super::measure::Tables;
-use crate::trajectory::Family;
-
 /// How finely a motion is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Accuracy {
@@ -18,9 +15,4 @@ impl Accuracy {
     /// What the evaluation of motions that are recorded and shown [begins with](super::Reorientation::certify): of most, exact
     /// to rounding.
     pub const FINE: Self = Self { attitude_steps: 402, peak_intervals: 1024 };
-
-    /// Twice the intervals, and twice the steps that tables made with this accuracy have.
-    pub(super) fn twice<F: Family>(self, tables: &Tables<F>) -> Self {
-        Self { attitude_steps: 2 * tables.rollout.steps(), peak_intervals: 2 * self.peak_intervals }
-    }
 }

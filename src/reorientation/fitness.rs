@@ -83,7 +83,7 @@ impl<F: Family> Reorientation<F> {
     #[must_use]
     pub fn with_accuracy(&self, accuracy: Accuracy) -> Self {
         let make = || Tables::new(&self.task, self.family(), accuracy);
-        let is_next = |fine: &Arc<Tables<F>>| accuracy == Accuracy::FINE.twice(fine);
+        let is_next = |fine: &Arc<Tables<F>>| accuracy == fine.twice(Accuracy::FINE);
         let kept = match &*self.fine {
             [fine, _] if accuracy == Accuracy::FINE => Some(fine),
             [fine, next] => fine.get().is_some_and(is_next).then_some(next),
@@ -94,7 +94,7 @@ impl<F: Family> Reorientation<F> {
 
     /// Twice as many steps and intervals as this problem's.
     pub(super) fn twice_as_fine(&self) -> Accuracy {
-        self.accuracy.twice(&self.tables)
+        self.tables.twice(self.accuracy)
     }
 
     /// The same problem, evaluated with so many lanes, or fewer where the machine has not so many; it

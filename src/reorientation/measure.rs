@@ -43,6 +43,14 @@ impl<F: Family> Tables<F> {
         })
     }
 
+    /// Twice the intervals, and twice the steps, of tables made with this accuracy.
+    pub(super) fn twice(&self, accuracy: Accuracy) -> Accuracy {
+        Accuracy {
+            attitude_steps: 2 * self.rollout.steps(),
+            peak_intervals: 2 * accuracy.peak_intervals,
+        }
+    }
+
     /// Room to evaluate motions in.
     pub(super) fn workspace(&self, family: &F) -> Workspace<F> {
         Workspace { samples: family.samples(&self.sampler), joints: Vec::new() }

@@ -1,9 +1,10 @@
-//! Damaged batches out of the way.
+//! What is known of damaged batches, and those out of the way.
 
 use std::fs;
 use std::io;
+use std::sync::{MutexGuard, PoisonError};
 
-use super::damage::{Damage, Flaw};
+use super::damage::{Damage, Flaw, Known};
 use super::{Store, StoreError, TABLES, io_error};
 use crate::output::create_folder;
 
@@ -11,6 +12,29 @@ use crate::output::create_folder;
 const DAMAGED: &str = "damaged";
 
 impl Store {
+    /// The files met so far that cannot be used, one a batch.
+    pub fn damaged(&self) -> Vec<Damage> {
+        self.known().damaged.values().cloned().collect()
+    }
+
+    pub(super) fn known(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A batch is another from now on, or none.
+    pub(super) fn forget(&self, batch: &str) {
+        let mut known = self.known();
+        known.sound.remove(batch);
+        known.damaged.remove(batch);
+    }
+
+    /// Takes note of a batch that cannot be used.
+    pub(super) fn note(&self, batch: &str, damage: Damage) {
+        let mut known = self.known();
+        known.sound.remove(batch);
+        known.damaged.insert(batch.to_owned(), damage);
+    }
+
     /// Moves every batch with a damaged file into a folder below `damaged/`, for its runs to be done again, and says
     /// which files are damaged. One that may be whole and cannot be read is an error: its runs may be there.
     pub(in crate::experiment) fn set_aside(&self) -> Result<Vec<Damage>, StoreError> {

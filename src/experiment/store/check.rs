@@ -134,7 +134,8 @@ fn check_trace(own: &DataFrame, found: &HashMap<String, bool>) -> Result<(), Rea
     for ((key, evaluation), cost) in rows.zip(costs.iter().flatten()) {
         match before {
             Some((last, at, best)) if last == key => {
-                if evaluation <= at || cost > best {
+                let is_in_order = at < evaluation && cost <= best;
+                if !is_in_order {
                     return Err(format!("has the trace of the run {key} out of order"));
                 }
             }
@@ -244,6 +245,7 @@ fn not_finite(name: &str) -> Reason {
     format!("has a number that is not finite in the column `{name}`")
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "as `map_err` gives it")]
 fn reason(error: PolarsError) -> Reason {
     error.to_string()
 }

@@ -3,9 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::path::PathBuf;
-use std::sync::{Arc, MutexGuard, PoisonError};
+use std::sync::Arc;
 
-use super::Store;
 use super::check::Contents;
 
 /// A stored file that cannot be used. The other two files of its batch are not used either.
@@ -41,29 +40,4 @@ pub(super) enum Flaw {
 pub(super) struct Known {
     pub(super) sound: HashMap<String, Arc<Contents>>,
     pub(super) damaged: BTreeMap<String, Damage>,
-}
-
-impl Store {
-    /// The files met so far that cannot be used, one a batch.
-    pub fn damaged(&self) -> Vec<Damage> {
-        self.known().damaged.values().cloned().collect()
-    }
-
-    pub(super) fn known(&self) -> MutexGuard<'_, Known> {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// A batch is another from now on, or none.
-    pub(super) fn forget(&self, batch: &str) {
-        let mut known = self.known();
-        known.sound.remove(batch);
-        known.damaged.remove(batch);
-    }
-
-    /// Takes note of a batch that cannot be used.
-    pub(super) fn note(&self, batch: &str, damage: Damage) {
-        let mut known = self.known();
-        known.sound.remove(batch);
-        known.damaged.insert(batch.to_owned(), damage);
-    }
 }

@@ -45,6 +45,9 @@ use crate::output::{FileError, create_folder, write_file};
 /// The tables, in the order in which a batch's are written.
 const TABLES: [&str; 3] = ["traces", "clocks", "runs"];
 
+/// How long the lists of a run should be, by their columns.
+type OfLists = Arc<[(String, usize)]>;
+
 /// The results of one experiment.
 #[derive(Debug, Clone)]
 pub struct Store {
@@ -112,7 +115,7 @@ impl Store {
     #[must_use]
     pub(in crate::experiment) fn of(self, plan: &Plan) -> Self {
         let mut lengths = HashMap::new();
-        let mut of_space: HashMap<(usize, String), Arc<[(String, usize)]>> = HashMap::new();
+        let mut of_space: HashMap<(usize, String), OfLists> = HashMap::new();
         for run in &plan.runs {
             let instance = &plan.instances[run.instance];
             let space = plan.optimisers[run.optimiser].space(instance);

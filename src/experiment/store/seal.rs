@@ -73,7 +73,8 @@ mod tests {
         assert_eq!(&sealed[..8], &PLAIN[..8]);
         assert_eq!(&sealed[72..], &PLAIN[8..]);
         // `printf 'PAR1colsfoo\003\000\000\000PAR1' | sha256sum`
-        let checksum: String = sealed[24..56].iter().map(|byte| format!("{byte:02x}")).collect();
+        let half = |at: usize| u128::from_be_bytes(sealed[at..at + 16].try_into().unwrap());
+        let checksum = format!("{:032x}{:032x}", half(24), half(40));
         assert_eq!(checksum, "d83f33becb157e25899380b5cf6fc4cdcc5466f17c68ce720f96f79b3aa5732e");
     }
 
