@@ -393,16 +393,20 @@ fn wild_motions_are_evaluated_finely_or_said_to_be_uncertain() {
         assert!(error < 1e-6 && miss <= error + 1e-8, "{size}: {error}");
         let path = problem.family().path(&coefficients);
         let joint = path.joints().next().unwrap();
-        let (mut way, mut jerk, mut before) = (0.0, 0.0_f64, task.start.joints[0]);
+        let (mut way, mut before) = (0.0, task.start.joints[0]);
+        let (mut jerk, mut bend) = (0.0_f64, 0.0_f64);
         for i in 0..=2_000_000 {
-            let at = joint.derivatives::<4>(f64::from(i) / 2e6);
+            let at = joint.derivatives::<6>(f64::from(i) / 2e6);
             way += (at[0] - before).abs();
             before = at[0];
-            jerk = jerk.max(at[3].abs() / motion.duration.powi(3));
+            (jerk, bend) = (jerk.max(at[3].abs()), bend.max(at[5].abs()));
         }
         assert!(way > way_at_least, "{size}: {way} rad");
-        let peak = motion.peaks.0[0][2].value;
-        assert!((peak / jerk - 1.0).abs() < 1e-6, "{size}: {peak} instead of {jerk}");
+        // The look misses a peak by no more than its bend over half the way between two places.
+        let missed = 1.01 * bend * 2.5e-7_f64.powi(2) / 2.0 / jerk;
+        let peak = motion.peaks.0[0][2].value * motion.duration.powi(3);
+        let error = peak / jerk - 1.0;
+        assert!((-1e-9..missed + 1e-9).contains(&error), "{size}: {error:e}, {missed:e}");
     }
     let motion = problem.certify(&wild(1e7), None);
     assert_eq!(motion.residual_error, Some(f64::INFINITY));
