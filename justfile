@@ -54,6 +54,14 @@ notebooks:
 cluster:
     tests/cluster/run.sh
 
+# readers of files and the planner, fuzzed; needs a C++ compiler
+fuzz:
+    fuzz/run.sh
+
+# licences and sources of dependencies
+deny:
+    .ci/deny
+
 # the default experiment
 run:
     cargo run --release -- run
