@@ -4,7 +4,8 @@
 #   fuzz/run.sh             two minutes for each of the planner's targets
 #   fuzz/run.sh 3600        an hour each
 #   fuzz/run.sh 600 stored  some targets; `experiment` and `stored` need the harness, whose build takes long
-# As many targets run at a time as there are processors. What one finds stands in fuzz/artifacts/TARGET.
+# As many targets run at a time as there are processors, from a seed that is always the same. What one finds stands in
+# fuzz/artifacts/TARGET.
 set -euo pipefail
 cd "$(dirname "$0")"
 seconds=${1:-120}
@@ -26,7 +27,7 @@ one() {
     local target=$1 seconds=$2 found=target/corpus/$1 log=target/$1.log
     mkdir -p "$found" "artifacts/$target"
     "$(ls -d target/*/release/"$target")" "$found" "corpus/$target" -artifact_prefix="artifacts/$target/" \
-        -max_total_time="$seconds" -dict=toml.dict -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 > "$log" 2>&1 &&
+        -seed=1 -max_total_time="$seconds" -dict=toml.dict -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 > "$log" 2>&1 &&
         local outcome=0 || local outcome=1
     echo "-- $target, $seconds s"
     grep -E "ERROR|panicked|instead of|Test unit|DONE|^stat::number_of_executed" "$log" || tail -5 "$log"

@@ -14,6 +14,9 @@ const SAME_PEAK: f64 = 1e-9;
 /// How often an evaluation is made twice as fine where they do not agree: 100,000 steps in the end.
 const DOUBLINGS: usize = 8;
 
+/// The largest rate of a joint by `τ` \[rad\] that the finest evaluation can follow.
+const FASTEST: f64 = 1e5;
+
 /// The largest difference of ends \[rad\] that is taken for an estimate of an error. Steps too wide for a path err by anything.
 const AN_ESTIMATE: f64 = 1e-2;
 
@@ -28,7 +31,9 @@ impl<F: Family> Reorientation<F> {
         let mut accuracy = Accuracy::FINE;
         let (mut end, mut found) = self.with_accuracy(accuracy).look(coefficients, duration);
         let mut error = f64::INFINITY;
-        for _ in 0..DOUBLINGS {
+        let mut rates = found.peaks.0.iter().map(|peaks| peaks[0].value * found.duration);
+        let doublings = if rates.all(|rate| rate <= FASTEST) { DOUBLINGS } else { 0 };
+        for _ in 0..doublings {
             let problem = self.with_accuracy(accuracy);
             accuracy = problem.twice_as_fine();
             let (next_end, next) = self.with_accuracy(accuracy).look(coefficients, duration);

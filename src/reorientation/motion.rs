@@ -69,7 +69,12 @@ impl Motion {
             std::iter::once(task.start.base).chain(ends).collect()
         };
         let (mut base, mut steps) = (base_in(1), 1);
-        while intervals * steps < MOST_STEPS {
+        let joints: Vec<JointMotion> = joints.collect();
+        let mut rates =
+            joints.iter().flat_map(|joint| &joint.derivatives).map(|at| (at[1] * duration).abs());
+        // Steps that are more than a radian wide follow nothing.
+        let most = if rates.all(|rate| rate <= MOST_STEPS as f64) { MOST_STEPS } else { 0 };
+        while intervals * steps < most {
             steps *= 2;
             let finer = base_in(steps);
             let is_same = base.iter().zip(&finer).all(|(a, b)| a.angle_to(b) <= SAME_ATTITUDE);
@@ -78,11 +83,7 @@ impl Motion {
                 break;
             }
         }
-        Self {
-            joints: joints.collect(),
-            time: taus.iter().map(|tau| tau * duration).collect(),
-            base,
-        }
+        Self { joints, time: taus.iter().map(|tau| tau * duration).collect(), base }
     }
 
     /// The base's ZYX Euler angles, `[yaw, pitch, roll]` \[rad\] at each time. Of all triples that an attitude has, that nearest to
