@@ -225,7 +225,12 @@ fn numbers_mean_the_same_in_every_experiment() {
         .iter()
         .map(|(_, number)| *number)
         .collect();
+    assert!(all.iter().all(|number| (10_001..=65_535).contains(number)), "{all:?}");
     all.sort_unstable();
     all.dedup();
     assert_eq!(all.len(), 100);
+    let budgets = numbers("[sweep]\nbudget = [100, 200]");
+    let [first, second] = &budgets[0].2[..] else { panic!("{budgets:?}") };
+    assert_eq!((budgets[0].0, first), (papers[0].0, &papers[0].2[0]));
+    assert_ne!(first, second, "runs with two budgets are trials of their own");
 }

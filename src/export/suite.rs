@@ -1,6 +1,7 @@
 //! An experiment's runs as benchmarking tools see them: algorithms, functions, trials.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
+use std::ops::RangeInclusive;
 
 use polars::prelude::*;
 
@@ -100,18 +101,9 @@ pub enum SuiteError {
     /// The formats count variables in 16 bits.
     #[error("found {0} variables, expected 65,535 at most")]
     TooManyVariables(usize),
-    /// Numbers worked out from what determines a function or an instance are, once in a great while, the same.
-    #[error(
-        "`{first}` and `{second}` come to the same number, {number}; export them from two experiments"
-    )]
-    SameNumber {
-        /// The number.
-        number: u32,
-        /// One of both.
-        first: String,
-        /// The other.
-        second: String,
-    },
+    /// And functions, and instances of one, too.
+    #[error("found more {0} than the formats have numbers for")]
+    TooMany(&'static str),
 }
 
 /// The trials of each algorithm on each function, by their dimension, with seeds of one instance
@@ -197,29 +189,25 @@ type Place = (usize, usize);
 fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>), SuiteError> {
     let mut functions: Vec<Function> = Vec::new();
     let mut places = Vec::new();
-    // What each number of a function, and of an instance within it and a dimension, has been worked out from.
     let mut by_number: HashMap<u32, (usize, Number)> = HashMap::new();
-    let mut instances: HashMap<(usize, u16, u32), Number> = HashMap::new();
+    let mut taken: HashSet<(usize, u16, u32)> = HashSet::new();
     for (instance, least) in plan.instances.iter().zip(least) {
         let Numbers { function, instance: own } = numbers(instance);
-        let value = number(&function);
-        let (place, known) = by_number.entry(value).or_insert_with(|| {
+        let is_another = |value: u32| by_number.get(&value).is_some_and(|(_, of)| *of != function);
+        let value = free(&function, is_another).ok_or(SuiteError::TooMany("functions"))?;
+        let known = by_number.get(&value).map(|(place, _)| *place);
+        let place = known.unwrap_or(functions.len());
+        if known.is_none() {
             functions.push(self::function(instance, value, &function));
-            (functions.len() - 1, function.clone())
-        });
-        let place = *place;
-        if *known != function {
-            return Err(same(value, &functions[place].name, &instance.label));
         }
+        by_number.insert(value, (place, function));
         let variables = instance.subject.dimension();
         let dimension =
             u16::try_from(variables).map_err(|_| SuiteError::TooManyVariables(variables))?;
-        let value = number(&own);
-        let twin = instances.insert((place, dimension, value), own.clone());
+        let value = free(&own, |value| taken.contains(&(place, dimension, value)))
+            .ok_or(SuiteError::TooMany("instances of one function"))?;
+        taken.insert((place, dimension, value));
         let of_function = &mut functions[place];
-        if twin.is_some_and(|twin| twin != own) {
-            return Err(same(value, &of_function.name, &instance.label));
-        }
         if !of_function.groups.contains(&instance.group) {
             of_function.groups.push(instance.group.clone());
         }
@@ -236,10 +224,6 @@ fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>), 
     Ok((functions, places))
 }
 
-fn same(number: u32, first: &str, second: &str) -> SuiteError {
-    SuiteError::SameNumber { number, first: first.to_owned(), second: second.to_owned() }
-}
-
 fn numbers(instance: &Instance) -> Numbers {
     let subject = &instance.subject;
     let by_group = || Numbers {
@@ -251,18 +235,24 @@ fn numbers(instance: &Instance) -> Numbers {
     subject.numbers().unwrap_or_else(by_group)
 }
 
-/// The least number that is worked out.
-const LEAST: u64 = 10_000;
+/// The numbers that are worked out; readers count in 16 bits.
+const WORKED_OUT: RangeInclusive<u32> = 10_001..=65_535;
 
-fn number(number: &Number) -> u32 {
-    match number {
+/// The number of a function or an instance, or where that is taken, as by one and the same with another budget, the next that is
+/// not.
+fn free(number: &Number, is_taken: impl Fn(u32) -> bool) -> Option<u32> {
+    let (first, last) = WORKED_OUT.into_inner();
+    let own = match number {
         Number::Known(number) => *number,
         Number::Of(identity) => {
             let hash = u64::from_str_radix(&digest(&identity.to_string()), 16).unwrap_or_default();
-            // Readers count in 32 bits with a sign.
-            (LEAST + hash % (i32::MAX as u64 - LEAST)) as u32
+            first + (hash % u64::from(last - first + 1)) as u32
         }
-    }
+    };
+    std::iter::once(own)
+        .chain((own + 1).max(first)..=last)
+        .chain(WORKED_OUT)
+        .find(|value| !is_taken(*value))
 }
 
 fn function(instance: &Instance, number: u32, by: &Number) -> Function {
