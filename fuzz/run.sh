@@ -18,6 +18,8 @@ if ! command -v c++ > /dev/null; then
     echo "fuzzing is skipped: there is no C++ compiler"
     exit 0
 fi
+# Instrumented builds stay apart from others.
+unset CARGO_TARGET_DIR
 tools=$PWD/target/tools
 export PATH=$tools/bin:$PATH
 command -v cargo-fuzz > /dev/null || cargo install --quiet --locked --debug --root "$tools" cargo-fuzz
