@@ -215,17 +215,18 @@ impl<F: SearchedFamily> Found<F> {
                  not turn the base faster"
             ),
             Reach::NotFound if self.interrupted => return,
+            Reach::NotFound
+                if task.family().spec().name() == FamilyName::SinePolynomial
+                    && task.is_held_by_time(&self.coefficients) =>
+            {
+                format!(
+                    "where it weighs too little for the time that it would take to end nearer. A `weights.base` above {} may bring \
+                     it there, as `--family spline` may, which takes the goal for a demand",
+                    task.task().base_weight
+                )
+            }
             Reach::NotFound => {
-                let weight = task.task().base_weight;
                 let advice = match task.family().spec().name() {
-                    FamilyName::SinePolynomial if task.is_held_by_time(&self.coefficients) => {
-                        note!(
-                            "warning: the base ends {residual:.6}° from its goal: it weighs too little here for the time that it \
-                             would take to end nearer. A `weights.base` above {weight} may bring it there, as \
-                             `--family spline` may, which takes the goal for a demand"
-                        );
-                        return;
-                    }
                     _ if self.spent.evaluations >= budget => "a larger `--budget` may find one",
                     FamilyName::Spline => "another `--seed` or more `--pieces` may find one",
                     FamilyName::SinePolynomial => {

@@ -150,7 +150,7 @@ impl Run {
         }
         {
             let bar = Bar::new(evaluations, watch.clone());
-            let damaged = folder.path().join("damaged");
+            let damaged = store.damaged_folder();
             let lines = Lines { bar: &bar, plan: &folder.plan, damaged, quiet: self.quiet };
             let jobs = Some(self.jobs.map_or_else(default_jobs, usize::from));
             folder.run(Options { jobs, shard }, &watch, &lines)?;

@@ -50,7 +50,7 @@ struct StatusJson<'a> {
     batches: usize,
     optimisers: Vec<EntrantJson<'a>>,
     failures: Vec<FailureJson<'a>>,
-    /// Files that cannot be used, one a batch.
+    /// Files that cannot be used, one per batch.
     damaged: Vec<DamageJson>,
 }
 

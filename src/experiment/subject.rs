@@ -168,7 +168,7 @@ pub struct Numbers {
 /// How exports number a function, or an instance of one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Number {
-    /// With the number that it is known by, from 1 to 9,999.
+    /// With the number that it is known by, from 1 to 10,000.
     Known(u32),
     /// With one that follows from what determines it.
     Of(Identity),

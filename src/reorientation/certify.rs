@@ -28,15 +28,14 @@ impl<F: Family> Reorientation<F> {
     ///
     /// Panics when there are more or fewer coefficients than the family's dimension.
     pub fn certify(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment {
-        let mut accuracy = Accuracy::FINE;
-        let (mut end, mut found) = self.with_accuracy(accuracy).look(coefficients, duration);
+        let mut problem = self.with_accuracy(Accuracy::FINE);
+        let (mut end, mut found) = problem.look(coefficients, duration);
         let mut error = f64::INFINITY;
         let mut rates = found.peaks.0.iter().map(|peaks| peaks[0].value * found.duration);
         let doublings = if rates.all(|rate| rate <= FASTEST) { DOUBLINGS } else { 0 };
         for _ in 0..doublings {
-            let problem = self.with_accuracy(accuracy);
-            accuracy = problem.twice_as_fine();
-            let (next_end, next) = self.with_accuracy(accuracy).look(coefficients, duration);
+            problem = self.with_accuracy(problem.twice_as_fine());
+            let (next_end, next) = problem.look(coefficients, duration);
             let difference = UnitQuaternion::angle_to(&end, &next_end);
             error = if found.agrees(&next) && difference <= AN_ESTIMATE {
                 difference

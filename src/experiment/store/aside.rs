@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io;
+use std::path::PathBuf;
 use std::sync::{MutexGuard, PoisonError};
 
 use super::damage::{Damage, Flaw, Known};
@@ -12,7 +13,12 @@ use crate::output::create_folder;
 const DAMAGED: &str = "damaged";
 
 impl Store {
-    /// The files met so far that cannot be used, one a batch.
+    /// Where batches with a damaged file are put.
+    pub fn damaged_folder(&self) -> PathBuf {
+        self.folder.join(DAMAGED)
+    }
+
+    /// The files met so far that cannot be used, one per batch.
     pub fn damaged(&self) -> Vec<Damage> {
         self.known().damaged.values().cloned().collect()
     }
@@ -65,7 +71,7 @@ impl Store {
 
     /// Moves a batch's files into a new folder, in the order in which they would be removed.
     fn move_aside(&self, batch: &str) -> Result<(), StoreError> {
-        let all = self.folder.join(DAMAGED);
+        let all = self.damaged_folder();
         create_folder(&all)?;
         let mut folder = all.join(batch);
         for n in 2.. {
