@@ -166,6 +166,31 @@ def check_ends(page, folder, checks):
     return len(residuals)
 
 
+def rotation(page):
+    """The matrix of the base's attitude that the page tells, from Z-Y-X Euler angles."""
+    yaw, pitch, roll = (math.radians(number(page, part)) for part in ("yaw", "pitch", "roll"))
+    (cy, sy), (cp, sp), (cr, sr) = ((math.cos(a), math.sin(a)) for a in (yaw, pitch, roll))
+    return [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
+
+
+def check_largest_turn(page, folder, checks):
+    """The largest turn that is told is the largest angle between the attitudes that are shown and the first one."""
+    told = re.search(r"up to ([0-9.]+)° from where it started", page.locator("[data-part='about']").inner_text())
+    scrub = page.locator("[data-part='scrub']")
+    turns, start = [], None
+    for place in range(0, 1001, 20):
+        scrub.fill(str(place))
+        now = rotation(page)
+        start = start or now
+        trace = sum(a * b for first, second in zip(start, now) for a, b in zip(first, second))
+        turns.append(math.degrees(math.acos(min(1.0, max(-1.0, (trace - 1.0) / 2.0)))))
+    checks.that(told and abs(float(told[1]) - max(turns)) < 0.3, f"{folder.name}: {told and told[1]}°, shown {max(turns):.2f}°")
+
+
 def check_motion(page, folder, checks):
     name = folder.name
     canvas, play = page.locator("canvas"), page.locator("[data-part='play']")
@@ -273,6 +298,7 @@ def main(results, pictures, axe):
                 if is_task:
                     check_motion(page, folder, checks)
                     motions += check_ends(page, folder, checks)
+                    check_largest_turn(page, folder, checks)
                 check_keyboard(page, checks, folder.name)
             check_looks(browser, path, checks, pictures)
             print(f"{folder.name:14} {size / 1e3:6.0f} kB {checks.made - before:5} checks", flush=True)

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::best::BestMotion;
 use crate::exhibit::Scene;
 use crate::posture::{Posture, Satellite};
+use crate::reorientation::excursions::Excursions;
 use crate::reorientation::motion::Motion;
 use crate::robot::{MovingJoint, Robot};
 use crate::task::Task;
@@ -31,6 +32,9 @@ struct MotionScene<'a> {
     cost: f64,
     /// How long it takes \[s\].
     duration: f64,
+    /// How far the base turns from its attitude at the start, at most \[°\], and when \[s\].
+    largest_turn: f64,
+    largest_turn_at: f64,
     /// What the base looks like.
     satellite: Satellite,
     /// The joints, from the base outward.
@@ -58,12 +62,15 @@ impl<'a> MotionScene<'a> {
     fn of(best: &'a BestMotion<'_>, intervals: usize) -> Self {
         let (run, task) = (best.run, best.problem.task());
         let motion = best.sample(intervals);
+        let excursions = Excursions::of(task, &motion);
         Self {
             label: &best.instance.label,
             optimiser: best.optimiser,
             seed: run.seed,
             cost: run.cost,
             duration: best.duration,
+            largest_turn: excursions.base_turn.to_degrees(),
+            largest_turn_at: excursions.base_turn_at,
             satellite: Satellite::of(&task.robot),
             frames: frames(&task.robot, &motion),
             joints: joints(task, &motion),

@@ -67,8 +67,10 @@ class Player {
   choose(index) {
     this.pause();
     this.scene = this.scenes[index];
-    const { optimiser, seed, cost, duration, joints } = this.scene;
-    this.parts.about.textContent = `Found by ${optimiser} with seed ${seed}: J = ${significant(cost)}, ${significant(duration)} s.`;
+    const { optimiser, seed, cost, duration, joints, largest_turn, largest_turn_at } = this.scene;
+    this.parts.about.textContent =
+      `Found by ${optimiser} with seed ${seed}: J = ${significant(cost)}, ${significant(duration)} s. ` +
+      `On the way the base is up to ${largest_turn.toFixed(1)}° from where it started (at ${largest_turn_at.toFixed(2)} s).`;
     this.parts.canvas.ariaLabel =
       `The robot seen from outside, in inertial axes: a satellite with two solar panels and an arm of ${joints.length} ` +
       "joints that turns it, the way of the tool, the base’s axes, and the base at its goal as a dashed outline. " +
