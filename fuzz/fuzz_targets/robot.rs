@@ -27,6 +27,7 @@ fuzz_target!(|bytes: &[u8]| {
     let (linear, angular) = total_momentum(&robot, &middle, &rates, &twist);
     let [linear, angular] = [linear, angular].map(Vector3::from);
     // The momentum of all parts, each taken alone, is what rounding is measured by.
-    let size: f64 = robot.links().iter().map(|link| link.body.mass).sum::<f64>() + robot.base().mass;
+    let size: f64 =
+        robot.links().iter().map(|link| link.body.mass).sum::<f64>() + robot.base().mass;
     let _ = (linear.norm() + angular.norm()) / size;
 });

@@ -89,7 +89,9 @@ impl Draw {
         let base_mass = n.size(20.0, 5_000.0)?;
         let base_inertia = n.inertia(0.3 * base_mass)?;
         let mount = n.vector(1.0)?;
-        let angles = |n: &mut Numbers<'_>, size: f64| Some([size * n.unit()?, size * n.unit()?, size * n.unit()?]);
+        let angles = |n: &mut Numbers<'_>, size: f64| {
+            Some([size * n.unit()?, size * n.unit()?, size * n.unit()?])
+        };
         let (start_zyx, goal_zyx) = (angles(n, 60.0)?, angles(n, 60.0)?);
         let base_weight = n.between(0.1, 0.95)?;
         let mut joints = Vec::new();
@@ -180,8 +182,12 @@ impl Draw {
 
     /// What the motion comes to.
     pub fn integrate(&self) -> Expected {
-        let phases: Vec<Phase> =
-            self.joints.iter().zip(self.coefficients.chunks_exact(2)).map(|(joint, c)| Phase::new(joint, c)).collect();
+        let phases: Vec<Phase> = self
+            .joints
+            .iter()
+            .zip(self.coefficients.chunks_exact(2))
+            .map(|(joint, c)| Phase::new(joint, c))
+            .collect();
         let rate = |tau: f64| {
             let states: Vec<[f64; 4]> = phases.iter().map(|phase| phase.at(tau)).collect();
             self.base_rate(&states)
@@ -205,7 +211,8 @@ impl Draw {
         for (phase, joint) in phases.iter().zip(&self.joints) {
             for k in 0..3 {
                 let peak = highest(|tau| phase.at(tau)[k + 1].abs());
-                duration = duration.max((peak / joint.limits[k].to_radians()).powf(1.0 / (k + 1) as f64));
+                duration =
+                    duration.max((peak / joint.limits[k].to_radians()).powf(1.0 / (k + 1) as f64));
             }
         }
         let error = (residual / 2.0).sin() / 0.5_f64.to_radians().sin();
@@ -218,7 +225,13 @@ impl Draw {
     fn base_rate(&self, states: &[[f64; 4]]) -> Vector3<f64> {
         let (mut turn, mut place) = (Rotation3::identity(), self.mount);
         let mut axes: Vec<(Vector3<f64>, Vector3<f64>, f64)> = Vec::new();
-        let mut bodies = vec![(self.base_mass, self.base_inertia, Vector3::zeros(), Vector3::zeros(), Vector3::zeros())];
+        let mut bodies = vec![(
+            self.base_mass,
+            self.base_inertia,
+            Vector3::zeros(),
+            Vector3::zeros(),
+            Vector3::zeros(),
+        )];
         for (joint, state) in self.joints.iter().zip(states) {
             axes.push((turn * Vector3::z(), place, state[1]));
             turn *= Rotation3::from_axis_angle(&Vector3::z_axis(), state[0]);
@@ -228,7 +241,13 @@ impl Draw {
                 omega += axis * *rate;
                 velocity += axis.cross(&(centre - at)) * *rate;
             }
-            bodies.push((joint.mass, turn * joint.inertia * turn.inverse(), centre, velocity, omega));
+            bodies.push((
+                joint.mass,
+                turn * joint.inertia * turn.inverse(),
+                centre,
+                velocity,
+                omega,
+            ));
             let [offset, d, a, twist] = joint.dh;
             turn *= Rotation3::from_axis_angle(&Vector3::z_axis(), offset);
             place += turn * Vector3::new(a, 0.0, d);
@@ -252,7 +271,8 @@ impl Draw {
 fn highest(value: impl Fn(f64) -> f64) -> f64 {
     let (mut place, mut width) = (0.5, 0.5);
     for _ in 0..2 {
-        let taus = (0..=STEPS).map(|i| (place + width * (2.0 * i as f64 / STEPS as f64 - 1.0)).clamp(0.0, 1.0));
+        let taus = (0..=STEPS)
+            .map(|i| (place + width * (2.0 * i as f64 / STEPS as f64 - 1.0)).clamp(0.0, 1.0));
         place = taus.max_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap_or(place);
         width /= STEPS as f64 / 2.0;
     }
