@@ -47,6 +47,8 @@ pub(super) struct Run {
     quiet: bool,
 }
 
+const WAITING: &str = "note: another process is merging files; waiting until it is done";
+
 /// Prints a line for every run that ends.
 struct Lines<'a> {
     bar: &'a Bar,
@@ -75,6 +77,10 @@ impl Progress for Lines<'_> {
             "{warning}{optimiser}{space}{instance} seed {}: {found}, {status}{colon}{message}",
             run.seed
         ));
+    }
+
+    fn waiting(&self) {
+        self.bar.line(WAITING);
     }
 
     fn set_aside(&self, damage: &Damage) {
@@ -138,8 +144,7 @@ impl Run {
         let (watch, mine, store) = (watch(), folder.runs(shard), &folder.store);
         if self.fresh {
             let own = mine.iter().filter(|run| folder.plan.obstacle(run).is_none());
-            let waiting =
-                || note!("note: another process is merging files; waiting until it is done");
+            let waiting = || note!("{WAITING}");
             store.remove(&own.map(|run| run.key.as_str()).collect(), &waiting)?;
         }
         let stored = store.keys()?;

@@ -58,11 +58,13 @@ struct StatusJson<'a> {
 struct DamageJson {
     file: String,
     reason: String,
+    /// Whether it may be whole: the system did not let it be read.
+    may_be_whole: bool,
 }
 
 impl From<Damage> for DamageJson {
     fn from(damage: Damage) -> Self {
-        Self { file: damage.path.display().to_string(), reason: damage.reason }
+        Self { file: damage.path.display().to_string(), reason: damage.reason, may_be_whole: damage.may_be_whole }
     }
 }
 

@@ -26,20 +26,22 @@ pub(super) fn warn_of_budgets(plan: &Plan) {
 /// Files that are named one by one.
 const MOST_NAMED: usize = 10;
 
-/// Names the stored files that could not be used.
+/// Names the stored files that could not be used, and says what helps.
 pub(super) fn warn_of_damage(store: &Store) {
     let damaged = store.damaged();
     for damage in damaged.iter().take(MOST_NAMED) {
         note!("warning: {damage}; its batch is left out");
     }
-    match damaged.len() {
-        0 => {}
-        count if count > MOST_NAMED => {
-            note!(
-                "warning: {} more files are damaged; `driftless run` does their runs again",
-                count - MOST_NAMED
-            );
-        }
-        _ => note!("`driftless run` sets damaged files aside and does their runs again"),
+    if damaged.len() > MOST_NAMED {
+        let more = damaged.len() - MOST_NAMED;
+        note!("warning: {more} more files cannot be used; `driftless status --json` names all");
+    }
+    if damaged.iter().any(|damage| damage.may_be_whole) {
+        note!(
+            "files that cannot be read may be whole, so `driftless run` stops until they can be: check their permissions and \
+             their disk"
+        );
+    } else if !damaged.is_empty() {
+        note!("`driftless run` sets damaged files aside and does their runs again");
     }
 }

@@ -117,8 +117,10 @@ impl Folder {
                 return Err(FolderError::Own(own.clone()));
             }
         }
+        // Read before the store is, which takes a while: another shard may be about to write the new files.
+        let before = stored_files(path);
         let store = Store::open(path)?.of(&plan);
-        let earlier = keep_earlier(path, &files, &plan, &store)?;
+        let earlier = keep_earlier(path, &before, &files, &plan, &store)?;
         for (file, text) in files {
             keep(&file, &text)?;
         }
@@ -201,35 +203,45 @@ fn keep(path: &Path, text: &str) -> Result<(), FolderError> {
     Ok(write_file(path, text.as_bytes())?)
 }
 
-/// Copies the experiment that a folder has, with its robots and tasks, where it is another than that of these files and some of
-/// its runs are stored that the plan does not have. Where to.
+/// The files of the experiment that a folder has, its robots and tasks included: names and texts.
+fn stored_files(folder: &Path) -> Vec<(PathBuf, String)> {
+    let mut names = vec![PathBuf::from(EXPERIMENT), PathBuf::from("robot.toml")];
+    for part in ["robots", "tasks"] {
+        let entries = std::fs::read_dir(folder.join(part)).into_iter().flatten().flatten();
+        names.extend(entries.map(|entry| Path::new(part).join(entry.file_name())));
+    }
+    names.sort();
+    let read = |name: PathBuf| {
+        let text = std::fs::read_to_string(folder.join(&name)).ok()?;
+        Some((name, text))
+    };
+    names.into_iter().filter_map(read).collect()
+}
+
+/// Copies the files that a folder had into `earlier/`, where those of the plan differ and some of the stored runs are not the
+/// plan's. Where to. The name of a copy follows from all that is in it, so no copy takes the place of another.
 fn keep_earlier(
     folder: &Path,
+    before: &[(PathBuf, String)],
     files: &[(PathBuf, String)],
     plan: &Plan,
     store: &Store,
 ) -> Result<Option<PathBuf>, FolderError> {
-    let read = |path: &Path| std::fs::read_to_string(path).ok();
-    let differs =
-        |(path, text): &(PathBuf, String)| read(path).is_some_and(|before| before != *text);
-    if !files.iter().any(differs) {
+    let differs = |(name, text): &(PathBuf, String)| {
+        files.iter().any(|(path, new)| *path == folder.join(name) && new != text)
+    };
+    if !before.iter().any(differs) {
         return Ok(None);
     }
     let planned = plan.places();
     if store.keys()?.iter().all(|key| planned.contains_key(key.as_str())) {
         return Ok(None);
     }
-    let Some(experiment) = read(&folder.join(EXPERIMENT)) else { return Ok(None) };
-    let copy = folder.join(EARLIER).join(digest(&experiment));
-    let mut names = vec![PathBuf::from(EXPERIMENT), PathBuf::from("robot.toml")];
-    for part in ["robots", "tasks"] {
-        let entries = std::fs::read_dir(folder.join(part)).into_iter().flatten().flatten();
-        names.extend(entries.map(|entry| Path::new(part).join(entry.file_name())));
-    }
-    for name in names {
-        if let Some(text) = read(&folder.join(&name)) {
-            keep(&copy.join(name), &text)?;
-        }
+    let all: Vec<String> =
+        before.iter().map(|(name, text)| format!("{}\0{text}", name.display())).collect();
+    let copy = folder.join(EARLIER).join(digest(&all.join("\0")));
+    for (name, text) in before {
+        keep(&copy.join(name), text)?;
     }
     Ok(Some(copy))
 }

@@ -20,6 +20,9 @@ pub trait Progress: Sync {
     fn set_aside(&self, damage: &Damage) {
         let _ = damage;
     }
+
+    /// Another process is merging files, and is waited for.
+    fn waiting(&self) {}
 }
 
 /// Tells nobody.
@@ -47,7 +50,8 @@ pub fn run(
     watch: &Watch,
     progress: &dyn Progress,
 ) -> Result<(), RunError> {
-    store.set_aside()?.iter().for_each(|damage| progress.set_aside(damage));
+    let damaged = store.set_aside(&|| progress.waiting())?;
+    damaged.iter().for_each(|damage| progress.set_aside(damage));
     let stored = store.keys()?;
     let missing = runs.iter().copied().filter(|run| !stored.contains(&run.key));
     let (missing, foreign): (Vec<_>, Vec<_>) =

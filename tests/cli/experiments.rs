@@ -13,7 +13,7 @@ const SMALL: &str = "name = 'small'\nseeds = 3\nbudget = { evaluations = 700 }\n
     [[optimiser]]\nrandom = { formulation = 'scaled' }\n";
 
 /// A task of the paper's, but for another robot.
-const OWN_ARM: &str = "[task]\nrobot = 'arm.toml'\n\
+pub(crate) const OWN_ARM: &str = "[task]\nrobot = 'arm.toml'\n\
     start = { joints_deg = [10, 30, 45, -20, -25, 40], base_zyx_deg = [6, 15, 7] }\n\
     goal = { joints_deg = [40, 60, 90, -10, -30, 60], base_zyx_deg = [0, 0, 0] }\n\
     limits = { rate_deg_s = 60, acceleration_deg_s2 = 70 }\n";

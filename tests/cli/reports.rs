@@ -6,7 +6,7 @@ use std::path::Path;
 
 use polars::prelude::*;
 
-use crate::experiments::run;
+use crate::experiments::{OWN_ARM, run};
 use crate::folder::{Folder, stderr, stdout};
 
 const SMALL: &str = "name = 'small'\nseeds = 3\nbudget = { evaluations = 600 }\n\
@@ -62,6 +62,29 @@ fn a_report_of_more_runs_stays() {
     let again = folder.run(&["run", &earlier.display().to_string(), "--out", "out"]);
     assert!(stderr(&again).contains("6 of 6 runs are stored already"), "{}", stderr(&again));
     assert!(report(&out) == complete);
+}
+
+/// One experiment file with one robot after another in `arm.toml`: each version that has runs is kept with its robot.
+#[test]
+fn robots_of_earlier_versions_are_kept() {
+    let task = OWN_ARM.replace("acceleration_deg_s2 = 70", "acceleration_deg_s2 = 70, jerk_deg_s3 = 80");
+    let text = SMALL.replace("functions = { name = ['sphere'], dimension = [3] }", &task);
+    let mut folder = Folder::new().with("small.toml", text);
+    for mass in ["mass = 600", "mass = 700", "mass = 800"] {
+        let arm = include_str!("../../src/robot/xiao2023.toml").replace("mass = 600", mass);
+        folder = folder.with("arm.toml", arm);
+        run(&folder, &["small.toml", "--out", "out"]);
+    }
+    let base = |folder: &Path| {
+        let robot: toml::Table =
+            fs::read_to_string(folder.join("robot.toml")).unwrap().parse().unwrap();
+        robot["base"]["mass"].as_float().unwrap()
+    };
+    let out = folder.path().join("out");
+    let entries = fs::read_dir(out.join("earlier")).unwrap();
+    let mut kept: Vec<f64> = entries.map(|entry| base(&entry.unwrap().path())).collect();
+    kept.sort_by(f64::total_cmp);
+    assert_eq!((kept, base(&out)), (vec![600.0, 700.0], 800.0));
 }
 
 /// More seeds are no other version: nothing is left out.

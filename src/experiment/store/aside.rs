@@ -42,8 +42,12 @@ impl Store {
     }
 
     /// Moves every batch with a damaged file into a folder below `damaged/`, for its runs to be done again, and says
-    /// which files are damaged. One that may be whole and cannot be read is an error: its runs may be there.
-    pub(in crate::experiment) fn set_aside(&self) -> Result<Vec<Damage>, StoreError> {
+    /// which files are damaged. Where one may be whole and cannot be read nothing is moved, and it is an error: its runs may be
+    /// there. Where another process is merging files, `waiting` is told before it is waited for.
+    pub(in crate::experiment) fn set_aside(
+        &self,
+        waiting: &dyn Fn(),
+    ) -> Result<Vec<Damage>, StoreError> {
         self.keys()?;
         let batches: Vec<String> = self.known().damaged.keys().cloned().collect();
         if batches.is_empty() {
@@ -51,22 +55,23 @@ impl Store {
         }
         // Another process may have set one aside and done it again since it was looked at. Without a lock that may
         // still happen between the second look and the move, and would lose nothing: the run is done once more.
-        let _lock = self.lock(Some(&|| {}));
-        let mut moved = Vec::new();
+        let _lock = self.lock(Some(waiting));
+        let mut damaged = Vec::new();
         for batch in batches {
             self.forget(&batch);
             match self.contents(&batch) {
                 Err(Flaw::Damaged(damage)) if damage.may_be_whole => {
                     return Err(StoreError::Unreadable(damage));
                 }
-                Err(Flaw::Damaged(damage)) => {
-                    self.move_aside(&batch)?;
-                    moved.push(damage);
-                }
+                Err(Flaw::Damaged(damage)) => damaged.push((batch, damage)),
                 Ok(_) | Err(Flaw::Gone) => {}
             }
         }
-        Ok(moved)
+        let moved = damaged.into_iter().map(|(batch, damage)| {
+            self.move_aside(&batch)?;
+            Ok(damage)
+        });
+        moved.collect()
     }
 
     /// Moves a batch's files into a new folder, in the order in which they would be removed.

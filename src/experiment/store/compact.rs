@@ -10,7 +10,7 @@ use super::damage::Flaw;
 use super::name::{is_batch, new_name};
 use super::stack::{Stack, only};
 use super::{Store, StoreError, TABLES, io_error};
-use crate::output::{remove_old, sync_folder};
+use crate::output::{remove_old, remove_temporary, sync_folder};
 use crate::search::Watch;
 
 /// A merged batch has no more runs…
@@ -70,8 +70,7 @@ impl Store {
     pub fn compact(&self, watch: &Watch) -> Result<Option<Compaction>, StoreError> {
         let before = self.batch_count()?;
         let Some(_lock) = self.lock(None)? else { return Ok(None) };
-        self.merge(|_| true, watch)?;
-        self.remove_remains()?;
+        self.merge_and_clean(watch)?;
         Ok(Some(Compaction { before, after: self.batch_count()? }))
     }
 
@@ -81,10 +80,15 @@ impl Store {
         if self.batch_count()? > MANY
             && let Ok(Some(_lock)) = self.lock(None)
         {
-            self.merge(|_| true, watch)?;
-            self.remove_remains()?;
+            self.merge_and_clean(watch)?;
         }
         Ok(())
+    }
+
+    /// For whoever holds the lock.
+    fn merge_and_clean(&self, watch: &Watch) -> Result<(), StoreError> {
+        self.merge(|_| true, watch)?;
+        self.remove_remains()
     }
 
     /// Removes runs. Where another process is merging files, `waiting` is told before it is waited for.
@@ -154,11 +158,10 @@ impl Store {
     fn remove_remains(&self) -> Result<(), StoreError> {
         let batches = self.batches()?;
         let is_part = |batch: &str| is_batch(batch) && !batches.contains(batch);
-        let is_remains = |name: &str| {
-            name.starts_with(".tmp") || name.strip_suffix(".parquet").is_some_and(is_part)
-        };
-        for table in TABLES {
-            remove_old(&self.folder.join(table), is_remains);
+        let is_remains = |name: &str| name.strip_suffix(".parquet").is_some_and(is_part);
+        for folder in TABLES.map(|table| self.folder.join(table)) {
+            remove_temporary(&folder);
+            remove_old(&folder, is_remains);
         }
         Ok(())
     }
@@ -260,7 +263,7 @@ mod tests {
         // A batch with a damaged file is set aside all the same: that loses nothing.
         fs::write(store.path("clocks", &key(7)), "").unwrap();
         let store = Store { try_lock: none, ..Store::existing(folder.path()) };
-        assert_eq!(store.set_aside().unwrap().len(), 1);
+        assert_eq!(store.set_aside(&|| {}).unwrap().len(), 1);
         check(&store, &(0..=MANY).filter(|run| *run != 7).collect());
     }
 
