@@ -92,6 +92,10 @@ fn long(parts: &[Vec<&Written>], caption: &str) -> String {
             alignments(part),
             body(part)
         );
+        // Every longtable counts as a table, with a caption or without.
+        if i > 0 {
+            text.push_str("\\addtocounter{table}{-1}\n");
+        }
     }
     text + "\\endgroup\n"
 }

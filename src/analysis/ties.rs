@@ -72,9 +72,9 @@ mod tests {
         assert_eq!(settled_of(30.0, &costs), expected);
     }
 
-    /// The same in other units: the verdict stays the same.
+    /// In smaller units the verdict stays the same. In larger ones no descent counts for more than one.
     #[test]
-    fn the_scale_of_costs_does_not_matter() {
+    fn smaller_units_do_not_matter() {
         for unit in [1e-12, 1e-3] {
             let scaled = |costs: &[f64]| costs.iter().map(|cost| unit * cost).collect::<Vec<f64>>();
             let costs = [3e-9, 0.1, 1e-15, 0.3, 0.1 + 2e-8, 0.1 + 1e-9];

@@ -64,6 +64,13 @@ impl Export {
     fn write_runs(&self, format: SuiteFormat, plan: &Plan, runs: &[Run]) -> Result<(), CliError> {
         let suite = Suite::new(plan, runs)?;
         write_suite(&self.out, format, &suite)?;
+        if suite.renumbered > 0 {
+            note!(
+                "note: {} functions or instances have the next free number, as another of this experiment has their own; \
+                 in other experiments these numbers may stand for something else",
+                suite.renumbered
+            );
+        }
         say!(
             "{}: {} runs of {} optimisers on {} functions",
             self.out.display(),

@@ -168,7 +168,7 @@ pub struct Numbers {
 /// How exports number a function, or an instance of one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Number {
-    /// With the number that it is known by, from 1 to 10,000.
+    /// With the number that it is known by, from 1 to 10,000; a larger one is replaced by one that follows from it.
     Known(u32),
     /// With one that follows from what determines it.
     Of(Identity),

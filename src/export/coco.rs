@@ -43,8 +43,10 @@ pub(super) fn write(suite: &Suite, folder: &Path) -> Result<(), SuiteError> {
         let mut index = String::new();
         for (dimension, trials) in by_dimension {
             let path = format!("{data}/bbobexp_f{id}_DIM{dimension}.dat");
-            let group = trials.first().map_or("", |trial| suite.objective(trial).group.as_str());
-            head(&mut index, algorithm, function, (id, dimension), group);
+            let groups: BTreeSet<&str> =
+                trials.iter().map(|trial| suite.objective(trial).group.as_str()).collect();
+            let groups: Vec<&str> = groups.into_iter().collect();
+            head(&mut index, algorithm, function, (id, dimension), &groups.join("; "));
             index.push_str(&path);
             let (mut by_target, mut by_evaluation) = (String::new(), String::new());
             for trial in trials {

@@ -26,6 +26,9 @@ pub struct Suite {
     pub functions: Vec<Function>,
     /// The stored runs, in the plan's order.
     pub trials: Vec<ExportedRun>,
+    /// How many functions and instances have the next free number, as another of this experiment has theirs. Such a number
+    /// depends on the experiment.
+    pub renumbered: usize,
 }
 
 /// One optimiser of the field.
@@ -114,7 +117,7 @@ impl Suite {
     /// The runs of a plan that are stored.
     pub fn new(plan: &Plan, runs: &[Run]) -> Result<Self, SuiteError> {
         let traces: Vec<Trace> = runs.iter().map(whole).collect();
-        let (functions, places) = functions(plan, &least_found(plan, runs))?;
+        let (functions, places, renumbered) = functions(plan, &least_found(plan, runs))?;
         let trial = |(run, trace): (&Run, Trace)| {
             let (function, instance) = places[run.instance];
             ExportedRun { algorithm: run.optimiser, function, instance, seed: run.seed, trace }
@@ -125,6 +128,7 @@ impl Suite {
             algorithms: algorithms(plan),
             functions,
             trials: runs.iter().zip(traces).map(trial).collect(),
+            renumbered,
         })
     }
 
@@ -185,8 +189,12 @@ fn algorithms(plan: &Plan) -> Vec<Algorithm> {
 /// Place of a function, and of an instance within it.
 type Place = (usize, usize);
 
-/// The functions, and where each instance of the plan is among them.
-fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>), SuiteError> {
+/// The functions, where each instance of the plan is among them, and how many have a number that is not their own.
+fn functions(
+    plan: &Plan,
+    least: &[f64],
+) -> Result<(Vec<Function>, Vec<Place>, usize), SuiteError> {
+    let mut renumbered = 0;
     let mut functions: Vec<Function> = Vec::new();
     let mut places = Vec::new();
     let mut by_number: HashMap<u32, (usize, Number)> = HashMap::new();
@@ -198,6 +206,7 @@ fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>), 
         let known = by_number.get(&value).map(|(place, _)| *place);
         let place = known.unwrap_or(functions.len());
         if known.is_none() {
+            renumbered += usize::from(value != own_number(&function));
             functions.push(self::function(instance, value, &function));
         }
         by_number.insert(value, (place, function));
@@ -206,6 +215,7 @@ fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>), 
             u16::try_from(variables).map_err(|_| SuiteError::TooManyVariables(variables))?;
         let value = free(&own, |value| taken.contains(&(place, dimension, value)))
             .ok_or(SuiteError::TooMany("instances of one function"))?;
+        renumbered += usize::from(value != own_number(&own));
         taken.insert((place, dimension, value));
         let of_function = &mut functions[place];
         if !of_function.groups.contains(&instance.group) {
@@ -221,7 +231,7 @@ fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>), 
             is_known: optimum.is_some(),
         });
     }
-    Ok((functions, places))
+    Ok((functions, places, renumbered))
 }
 
 fn numbers(instance: &Instance) -> Numbers {
@@ -238,17 +248,25 @@ fn numbers(instance: &Instance) -> Numbers {
 /// The numbers that are worked out; readers count in 16 bits.
 const WORKED_OUT: RangeInclusive<u32> = 10_001..=65_535;
 
-/// The number of a function or an instance, or where that is taken, as by one and the same with another budget, the next that is
+/// The number that a function or an instance has where no other has it.
+fn own_number(number: &Number) -> u32 {
+    let (first, last) = WORKED_OUT.into_inner();
+    let hashed = |text: &str| {
+        let hash = u64::from_str_radix(&digest(text), 16).unwrap_or_default();
+        first + (hash % u64::from(last - first + 1)) as u32
+    };
+    match number {
+        Number::Known(number) if (1..first).contains(number) => *number,
+        Number::Known(number) => hashed(&number.to_string()),
+        Number::Of(identity) => hashed(&identity.to_string()),
+    }
+}
+
+/// The number of a function or an instance or, where that is taken, as by one and the same with another budget, the next that is
 /// not.
 fn free(number: &Number, is_taken: impl Fn(u32) -> bool) -> Option<u32> {
     let (first, last) = WORKED_OUT.into_inner();
-    let own = match number {
-        Number::Known(number) => *number,
-        Number::Of(identity) => {
-            let hash = u64::from_str_radix(&digest(&identity.to_string()), 16).unwrap_or_default();
-            first + (hash % u64::from(last - first + 1)) as u32
-        }
-    };
+    let own = own_number(number);
     std::iter::once(own)
         .chain((own + 1).max(first)..=last)
         .chain(WORKED_OUT)

@@ -84,9 +84,11 @@ impl Mistake {
         let line = before.rsplit('\n').next().unwrap_or_default();
         let skipped = line.chars().count().saturating_sub(WINDOW);
         let near: String = line.chars().skip(skipped).collect();
-        let there: String =
-            behind.lines().next().unwrap_or_default().chars().take(WINDOW).collect();
-        Some(format!("{}{}: `…{near}{there}…`", self.place(), self.message))
+        let rest = behind.lines().next().unwrap_or_default();
+        let there: String = rest.chars().take(WINDOW).collect();
+        let cut = |is_cut: bool| if is_cut { "…" } else { "" };
+        let (start, end) = (cut(skipped > 0), cut(there.len() < rest.len()));
+        Some(format!("{}{}: `{start}{near}{there}{end}`", self.place(), self.message))
     }
 }
 

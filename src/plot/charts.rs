@@ -11,7 +11,7 @@ use super::{
 };
 use crate::analysis::ALPHA;
 use crate::exhibit::{Chart, Finding, Table};
-use crate::experiment::Plan;
+use crate::experiment::{Plan, Run};
 use crate::figure::{Figure, FigureError};
 
 /// The names that every experiment's charts may have.
@@ -42,16 +42,16 @@ struct Maker<'a> {
     charts: Vec<Chart>,
 }
 
-/// What is said where there are too many groups of instances for charts by group.
-pub(crate) fn left_out(plan: &Plan) -> Option<Finding> {
-    let groups: HashSet<&str> = plan.instances.iter().map(|i| i.group.as_str()).collect();
+/// What is said where the stored runs are of too many groups of instances for charts with a panel for each.
+pub(crate) fn left_out(plan: &Plan, runs: &[Run]) -> Option<Finding> {
+    let groups = runs.iter().map(|run| plan.instances[run.instance].group.as_str());
+    let panels = groups.collect::<HashSet<_>>().len();
     let told = format!(
-        "Those of convergence, final costs and expected running times, which have a panel for each group of instances: \
-         there are {}, and {MOST_PANELS} at most are drawn. Their tables have all.",
-        groups.len()
+        "Convergence, final costs and expected running times are not drawn: they would need {panels} panels, and a chart has \
+         {MOST_PANELS} at most. Their tables are complete."
     );
     let question = "Which charts by group are left out?";
-    (groups.len() > MOST_PANELS).then(|| Finding::new(question, told))
+    (panels > MOST_PANELS).then(|| Finding::new(question, told))
 }
 
 /// Every chart that the tables of an experiment with so many stored runs give. Those of more than 24

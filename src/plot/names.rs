@@ -1,6 +1,6 @@
 //! What charts call the optimisers of a field: labels without the settings that all of a kind share.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::figure::axis::LONGEST_NAME;
 use crate::figure::style::TEXT_PT;
@@ -18,42 +18,76 @@ pub(super) struct Names {
 /// them have; where what is left is too long for a chart, values alone are left, and the note says of what.
 pub(super) fn names(labels: &[&str]) -> Names {
     let parts: Vec<(&str, Vec<&str>)> = labels.iter().map(|label| parts(label)).collect();
-    let mut told = Names::default();
+    let mut by_head: HashMap<&str, Vec<&[&str]>> = HashMap::new();
+    for (head, settings) in &parts {
+        by_head.entry(head).or_default().push(settings);
+    }
+    let kinds: HashMap<&str, Kind> =
+        by_head.into_iter().map(|(head, all)| (head, Kind::new(head, &all))).collect();
+    let mut short = Names::default();
     let mut noted = HashSet::new();
     for (head, settings) in &parts {
-        let twins = || parts.iter().filter(|(other, _)| other == head).map(|(_, own)| own);
-        let is_shared = |setting: &&&str| twins().all(|own| own.contains(setting));
-        let own = |settings: &[&str]| -> String {
-            let own = settings.iter().filter(|setting| twins().count() < 2 || !is_shared(setting));
-            own.fold((*head).to_owned(), |name, setting| name + " " + setting)
-        };
-        let keys = |settings: &[&str]| -> Vec<String> {
-            let own = settings.iter().filter(|setting| !is_shared(setting));
-            own.filter_map(|s| s.split_once('=')).map(|(key, _)| key.to_owned()).collect()
-        };
-        let is_long = twins().any(|settings| text_width(&own(settings), TEXT_PT) > LONGEST_NAME);
-        let same_keys = twins().all(|other| keys(other) == keys(settings));
-        let name = own(settings);
-        if !(is_long && same_keys && keys(settings).len() > 1) {
-            told.names.push(name);
-            continue;
-        }
-        let values = settings.iter().filter(|setting| !is_shared(setting));
-        let values: Vec<&str> = values.filter_map(|s| Some(s.split_once('=')?.1)).collect();
-        told.names.push(format!("{head} {}", values.join(" ")));
-        if noted.insert(*head) {
-            let keys = keys(settings).join(", ");
-            told.note.extend([" Behind ", head, " stand, in this order, ", &keys, "."]);
+        let kind = &kinds[head];
+        short.names.push(kind.name(head, settings));
+        if let Some(keys) = &kind.keys
+            && noted.insert(*head)
+        {
+            let keys = keys.join(", ");
+            short.note.extend([" Behind ", head, " stand, in this order, ", &keys, "."]);
         }
     }
-    let distinct: HashSet<&String> = told.names.iter().collect();
+    let distinct: HashSet<&String> = short.names.iter().collect();
     if distinct.len() < labels.len() {
         return Names {
             names: labels.iter().map(|&l| l.to_owned()).collect(),
             note: String::new(),
         };
     }
-    told
+    short
+}
+
+/// The labels with the same beginning.
+struct Kind<'a> {
+    /// The settings that all of them have.
+    shared: HashSet<&'a str>,
+    /// The keys of the others, where values stand without them.
+    keys: Option<Vec<&'a str>>,
+}
+
+impl<'a> Kind<'a> {
+    fn new(head: &str, all: &[&[&'a str]]) -> Self {
+        let mut kind = Self { shared: HashSet::new(), keys: None };
+        let [first, others @ ..] = all else { return kind };
+        if others.is_empty() {
+            return kind;
+        }
+        kind.shared = first.iter().copied().collect();
+        for other in others {
+            kind.shared.retain(|setting| other.contains(setting));
+        }
+        let keys = kind.own_keys(first);
+        let is_long =
+            all.iter().any(|settings| text_width(&kind.name(head, settings), TEXT_PT) > LONGEST_NAME);
+        let same_keys = others.iter().all(|other| kind.own_keys(other) == keys);
+        kind.keys = (is_long && same_keys && keys.len() > 1).then_some(keys);
+        kind
+    }
+
+    /// The settings of a label that not all have.
+    fn own<'b>(&self, settings: &'b [&'a str]) -> impl Iterator<Item = &'a str> + use<'_, 'a, 'b> {
+        settings.iter().copied().filter(|setting| !self.shared.contains(setting))
+    }
+
+    fn own_keys(&self, settings: &[&'a str]) -> Vec<&'a str> {
+        self.own(settings).filter_map(|setting| Some(setting.split_once('=')?.0)).collect()
+    }
+
+    fn name(&self, head: &str, settings: &[&'a str]) -> String {
+        self.own(settings).fold(head.to_owned(), |name, setting| {
+            let value = setting.split_once('=').map_or(setting, |(_, value)| value);
+            name + " " + if self.keys.is_some() { value } else { setting }
+        })
+    }
 }
 
 /// What a label begins with, and its settings.

@@ -83,7 +83,7 @@ pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, 
     let summary = render(&summary(plan, &runs, &targets)?)?;
     let own = analysis.exhibits();
     let mut findings = analysis.findings(&own);
-    findings.extend(plot::left_out(plan));
+    findings.extend(plot::left_out(plan, &runs));
     let path = folder.join(PAGE);
     if kept.is_none() {
         let mut tables = analysis.tables(own.tables)?;

@@ -370,8 +370,12 @@ fn median_line(
         let compares = matches!(ordinate, Ordinate::Cost | Ordinate::Residual);
         pose.len() == most && (compares || !pose.iter().any(|point| point.misses()))
     };
-    let poses: Vec<_> = own.poses.iter().filter(counts).collect();
-    let first = poses.first()?;
+    let first = own.poses.iter().find(counts)?;
+    // While a sweep is half done, poses may lack different values.
+    let same_settings = |pose: &&Vec<&Point>| {
+        pose.iter().zip(first).all(|(point, other)| point.setting == other.setting)
+    };
+    let poses: Vec<_> = own.poses.iter().filter(counts).filter(same_settings).collect();
     let points = first.iter().enumerate().map(|(i, point)| {
         let values = poses.iter().map(|pose| ordinate.of(pose[i])).collect();
         [point.setting, median(values)]
