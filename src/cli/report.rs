@@ -30,13 +30,13 @@ impl Report {
         let folder = self.results.open()?;
         let mut target = Target::of(folder.path());
         if let Some(out) = &self.out {
-            target = target.into(out);
+            target = target.with_folder(out);
         }
         if self.replace {
             target = target.replacing();
         }
         match report(&folder, &target)? {
-            // What is damaged was told; the report from before has what it held.
+            // The damage has been reported already; the existing report still has those runs.
             Some(kept) if !folder.store.damaged().is_empty() => {
                 note!("note: {kept}");
                 Ok(())

@@ -117,7 +117,7 @@ impl Folder {
                 return Err(FolderError::Own(own.clone()));
             }
         }
-        let store = Store::open(path)?.of(&plan);
+        let store = Store::open(path)?.knowing_lengths_of(&plan);
         let earlier = keep_earlier(path, &files, &plan, &store)?;
         for (file, text) in files {
             keep(&file, &text)?;
@@ -134,7 +134,7 @@ impl Folder {
             return Err(FolderError::NoResults(path.to_owned()));
         }
         let plan = Experiment::read(&Document::read(&file)?, registry)?.plan()?;
-        let store = Store::existing(path).of(&plan);
+        let store = Store::existing(path).knowing_lengths_of(&plan);
         Ok(Self { path: path.to_owned(), plan, store, earlier: None })
     }
 
