@@ -77,14 +77,14 @@ fn texts_of(swept: Swept) -> (&'static str, &'static str, &'static str) {
         Swept::JerkLimit => (
             "jerk-sweep",
             "Limit on jerks",
-            "Duration of the best motion against the limit on jerks. Short dashes, where there are any, are the \
+            "Duration of the best motion against the limit on jerks. The dotted line, where there is one, is the \
              law that holds while jerk alone limits the motion, from the lowest limit on at which the goal is reached.",
         ),
         Swept::Terms => (
             "terms-sweep",
             "Number of terms",
-            "Cost of the best motion against the number of free coefficients per joint. Short dashes, where there are any, \
-             are the least cost found for motions of any shape, of piecewise constant jerk.",
+            "Cost of the best motion against the number of free coefficients per joint. The dotted line, where there is one, \
+             is the least cost found for motions of any shape, of piecewise constant jerk.",
         ),
         Swept::Pieces => (
             "pieces-sweep",
