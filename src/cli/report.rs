@@ -9,6 +9,7 @@ use super::CliError;
 use super::results::ResultsFolder;
 use super::warnings::{warn_of_budgets, warn_of_damage};
 use crate::exhibit::Finding;
+use crate::exhibit::words::plural;
 use crate::experiment::{Folder, standing};
 use crate::report::{Target, write};
 
@@ -84,9 +85,11 @@ pub(super) fn report(folder: &Folder, target: &Target<'_>) -> Result<Option<Stri
         note!("note: {others}");
     }
     Ok(report.kept.map(|shown| {
+        let are = if report.stored == 1 { "is" } else { "are" };
         format!(
-            "{} shows {shown} runs, of this experiment {} are stored: it stays as it is",
+            "{} shows {}, but only {} of this experiment {are} stored; the report was left as it is",
             report.page.display(),
+            plural(shown, "run"),
             report.stored
         )
     }))

@@ -79,7 +79,7 @@ impl Progress for Lines<'_> {
 
     fn set_aside(&self, damage: &Damage) {
         self.bar.line(&format!(
-            "warning: {damage}; the files of this batch are now in {}, and its runs are missing",
+            "warning: {damage}; its batch was moved to {}, and its runs are done again",
             self.damaged.display()
         ));
     }
