@@ -220,8 +220,8 @@ impl<F: SearchedFamily> Found<F> {
                     && task.is_held_by_time(&self.coefficients) =>
             {
                 format!(
-                    "where it weighs too little for the time that it would take to end nearer. A `weights.base` above {} may bring \
-                     it there, as `--family spline` may, which takes the goal for a demand",
+                    "because reaching it costs more time than its weight is worth. Raise `weights.base` above {}, or use \
+                     `--family spline`, which always asks for the goal",
                     task.task().base_weight
                 )
             }
@@ -234,7 +234,7 @@ impl<F: SearchedFamily> Found<F> {
                     }
                 };
                 let missed = if self.assessment.residual_error.is_none_or(f64::is_infinite) {
-                    "as far as can be told of a motion that swings so often, and no other was found"
+                    "as far as can be told: the motion swings too often to be evaluated reliably, and no other was found"
                 } else if !self.assessment.is_within(task.task().goal_tolerance) {
                     "and no motion was found that reaches it"
                 } else {

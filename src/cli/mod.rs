@@ -353,7 +353,7 @@ fn watch() -> Arc<Watch> {
 }
 
 /// Starts the threads that work is shared out to, before there is any: later, those that are missing are a panic.
-fn start_threads() -> Result<(), CliError> {
+fn start_worker_threads() -> Result<(), CliError> {
     // An error without a cause is that they were started already.
     match rayon::ThreadPoolBuilder::new().build_global() {
         Err(error) if error.source().is_some() => Err(CliError::Threads(error.to_string())),

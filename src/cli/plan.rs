@@ -12,7 +12,7 @@ use super::found::{Found, OtherFamily, Spent};
 use super::motion::MotionFiles;
 use super::progress::Bar;
 use super::walls::Walls;
-use super::{CliError, read_or, shown, start_threads, warn_of, watch};
+use super::{CliError, read_or, shown, start_worker_threads, warn_of, watch};
 use crate::input::{InputError, nearest};
 use crate::optimiser::{Scp, Settings};
 use crate::reorientation::{
@@ -77,7 +77,7 @@ const OTHER_STARTS: usize = 12;
 
 impl Plan {
     pub(super) fn execute(self) -> Result<(), CliError> {
-        start_threads()?;
+        start_worker_threads()?;
         self.files.check()?;
         let settings = find_optimiser(&self.optimiser)?;
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;

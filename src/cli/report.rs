@@ -9,6 +9,7 @@ use super::CliError;
 use super::results::ResultsFolder;
 use super::warnings::{warn_of_budgets, warn_of_damage};
 use crate::exhibit::Finding;
+use crate::exhibit::words::plural;
 use crate::experiment::{Folder, standing};
 use crate::report::{Target, write};
 
@@ -30,13 +31,13 @@ impl Report {
         let folder = self.results.open()?;
         let mut target = Target::of(folder.path());
         if let Some(out) = &self.out {
-            target = target.into(out);
+            target = target.with_folder(out);
         }
         if self.replace {
             target = target.replacing();
         }
         match report(&folder, &target)? {
-            // What is damaged was told; the report from before has what it held.
+            // The damage has been reported already; the existing report still has those runs.
             Some(kept) if !folder.store.damaged().is_empty() => {
                 note!("note: {kept}");
                 Ok(())
@@ -84,9 +85,11 @@ pub(super) fn report(folder: &Folder, target: &Target<'_>) -> Result<Option<Stri
         note!("note: {others}");
     }
     Ok(report.kept.map(|shown| {
+        let are = if report.stored == 1 { "is" } else { "are" };
         format!(
-            "{} shows {shown} runs, of this experiment {} are stored: it stays as it is",
+            "{} shows {}, but only {} of this experiment {are} stored; the report was left as it is",
             report.page.display(),
+            plural(shown, "run"),
             report.stored
         )
     }))

@@ -19,15 +19,15 @@ pub(super) struct ResultsFolder {
 impl ResultsFolder {
     /// Reads the experiment that the folder keeps. Nothing is written.
     pub(super) fn open(&self) -> Result<Folder, CliError> {
-        start_threads()?;
+        start_all_threads()?;
         Ok(Folder::open(&self.folder, &registry())?)
     }
 }
 
 /// Starts the threads that work on results is shared out to, those of polars among them.
-pub(super) fn start_threads() -> Result<(), CliError> {
-    super::start_threads()?;
-    if crate::experiment::start_threads() {
+pub(super) fn start_all_threads() -> Result<(), CliError> {
+    super::start_worker_threads()?;
+    if crate::experiment::start_polars_threads() {
         Ok(())
     } else {
         Err(CliError::Threads("the system gives no more of them".to_owned()))

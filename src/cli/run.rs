@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::progress::Bar;
 use super::report::report;
-use super::results::start_threads;
+use super::results::start_all_threads;
 use super::warnings::warn_of_subjects;
 use super::{CliError, read_or, watch};
 use crate::experiment::{
@@ -85,7 +85,7 @@ impl Progress for Lines<'_> {
 
     fn set_aside(&self, damage: &Damage) {
         self.bar.line(&format!(
-            "warning: {damage}; the files of this batch are now in {}, and its runs are missing",
+            "warning: {damage}; its batch was moved to {}, and its runs are done again",
             self.damaged.display()
         ));
     }
@@ -93,7 +93,7 @@ impl Progress for Lines<'_> {
 
 impl Run {
     pub(super) fn execute(self) -> Result<(), CliError> {
-        start_threads()?;
+        start_all_threads()?;
         let shard = self.shard.map(told).transpose()?;
         let (document, registry) =
             (read_or(self.file.as_deref(), Experiment::embedded)?, registry());

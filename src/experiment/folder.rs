@@ -119,7 +119,7 @@ impl Folder {
         }
         // Read before the store is, which takes a while: another shard may be about to write the new files.
         let before = stored_files(path);
-        let store = Store::open(path)?.of(&plan);
+        let store = Store::open(path)?.knowing_lengths_of(&plan);
         let earlier = keep_earlier(path, &before, &files, &plan, &store)?;
         for (file, text) in files {
             keep(&file, &text)?;
@@ -136,7 +136,7 @@ impl Folder {
             return Err(FolderError::NoResults(path.to_owned()));
         }
         let plan = Experiment::read(&Document::read(&file)?, registry)?.plan()?;
-        let store = Store::existing(path).of(&plan);
+        let store = Store::existing(path).knowing_lengths_of(&plan);
         Ok(Self { path: path.to_owned(), plan, store, earlier: None })
     }
 

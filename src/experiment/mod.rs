@@ -37,7 +37,7 @@ pub use run::{Improvement, Run, best_run};
 pub use runner::{Progress, RunError, run};
 pub use shard::{Shard, ShardChoice, ShardError};
 pub use standing::{FailedRun, Standing, Tally, standing};
-pub(crate) use store::start_threads;
+pub(crate) use store::start_polars_threads;
 pub use store::{Compaction, Damage, Store, StoreError};
 pub use subject::{Coordinate, Instance, Number, Numbers, Results, Subject};
 pub use targets::TargetTable;

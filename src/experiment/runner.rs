@@ -16,7 +16,7 @@ pub trait Progress: Sync {
     /// A run is stored.
     fn finished(&self, run: &RunSpec, record: &Record);
 
-    /// A stored file is damaged: its batch was moved into the folder `damaged`, and its runs are missing.
+    /// A stored file is damaged: its batch was moved into the folder `damaged`, and its runs are done again.
     fn set_aside(&self, damage: &Damage) {
         let _ = damage;
     }

@@ -23,10 +23,11 @@ pub struct Standing {
 impl Standing {
     /// What there is to say of runs that do not belong to the plan, if there are any.
     pub fn others(&self) -> Option<String> {
-        let (s, are) = if self.others == 1 { ("", "is") } else { ("s", "are") };
+        let (run, belong) =
+            if self.others == 1 { ("run", "belongs") } else { ("runs", "belong") };
         (self.others > 0).then(|| {
             format!(
-                "{} other run{s} {are} stored: of another version of the experiment",
+                "{} stored {run} {belong} to another version of the experiment",
                 self.others
             )
         })

@@ -34,9 +34,11 @@ pub enum InputError {
     Content(Box<Mistake>),
 }
 
-/// Characters of the longest line that is shown whole, on either side of a mistake in a longer one, and of the longest message.
+/// Characters of the longest line that is shown whole.
 const LONGEST_LINE: usize = 400;
+/// Characters that are shown on either side of a mistake in a longer line.
 const WINDOW: usize = 40;
+/// Characters of the longest message.
 const LONGEST_MESSAGE: usize = 800;
 
 /// What is wrong with a text, and where.

@@ -28,9 +28,9 @@ pub(crate) const NAMES: [&str; 9] = [
 ];
 
 /// How charts draw costs.
-const SCALES: &str = "Where costs are negative, what they are above the least cost known is shown, or, without one, an axis that \
-                      is not logarithmic. A logarithmic axis shows sixteen decades at most; zero and what is below stand on a \
-                      line of short dashes.";
+const SCALES: &str = "Where costs are negative, the chart shows their distance to the least known cost or, if none is known, uses a \
+                      linear axis. A logarithmic axis covers at most sixteen decades; costs below it, and zero, are drawn on the \
+                      dotted line.";
 
 /// What charts are made of.
 struct Maker<'a> {

@@ -28,7 +28,7 @@ pub(super) fn convergence(
         let are_known = of(GAPS).all(|gap| !gap.is_nan());
         let are_gaps = of(0).any(|cost| cost < 0.0) && are_known;
         let (first, what) =
-            if are_gaps { (GAPS, " above the least") } else { (0, ", median and quartiles") };
+            if are_gaps { (GAPS, " − least known") } else { (0, ", median and quartiles") };
         let scale = CostScale::of(of(first).collect::<Vec<_>>().into_iter());
         let drawn = Drawn { first, scale };
         let mut marks: Vec<Mark> = scale.cut(evaluations).into_iter().collect();

@@ -45,13 +45,14 @@ pub(super) fn effect_sizes(
         .zip(&p)
         .flat_map(|(&effect, &p)| [(effect, p <= ALPHA), (1.0 - effect, p <= ALPHA)])
         .collect();
-    let (width, told) = match Told::within(cell(Width::Column), &shown) {
-        Some(told) => (Width::Column, Some(told)),
-        None => (Width::Page, Told::within(cell(Width::Page), &shown)),
+    let (width, cell_text) = match CellText::within(cell(Width::Column), &shown) {
+        Some(own) => (Width::Column, Some(own)),
+        None => (Width::Page, CellText::within(cell(Width::Page), &shown)),
     };
     let cell = |row: usize, column: usize, colour: RGBColor, effect: Option<(f64, bool)>| {
-        let text = effect.zip(told.as_ref()).map(|((effect, star), told)| told.text(effect, star));
-        let points = told.as_ref().map_or(TEXT_PT, |told| told.points);
+        let text =
+            effect.zip(cell_text.as_ref()).map(|((effect, star), own)| own.text(effect, star));
+        let points = cell_text.as_ref().map_or(TEXT_PT, |own| own.points);
         let at = [column as f64, row as f64];
         Mark::Cell { at, colour, text: text.unwrap_or_default(), points }
     };
@@ -65,7 +66,7 @@ pub(super) fn effect_sizes(
         }
     }
     let numbers: Vec<String> = (1..=count).map(|n| n.to_string()).collect();
-    let star = if told.is_some() { "*, strong: significant" } else { "strong: significant" };
+    let star = if cell_text.is_some() { "*, strong: significant" } else { "strong: significant" };
     for note in [format!("{star} (Wilcoxon–Holm, {ALPHA})"), "pale: not".to_owned()] {
         marks.push(Mark::Note(note));
     }
@@ -75,23 +76,23 @@ pub(super) fn effect_sizes(
 }
 
 /// How numbers stand in cells.
-struct Told {
+struct CellText {
     /// Text size \[pt\].
     points: f64,
     /// Whether 0.93 is .93.
     is_short: bool,
 }
 
-impl Told {
+impl CellText {
     /// The largest with which all of some effects, and whether these are significant, fit cells of this width \[mm\], if there
     /// is one.
     fn within(width: f64, effects: &[(f64, bool)]) -> Option<Self> {
         let mut choices = [false, true]
             .into_iter()
             .flat_map(|is_short| TEXTS.into_iter().map(move |points| Self { points, is_short }));
-        choices.find(|told| {
+        choices.find(|choice| {
             let fits = |&(effect, is_significant): &(f64, bool)| {
-                text_width(&told.text(effect, is_significant), told.points) + GAP <= width
+                text_width(&choice.text(effect, is_significant), choice.points) + GAP <= width
             };
             effects.iter().all(fits)
         })

@@ -71,7 +71,7 @@ pub(super) fn final_costs(
     let panel = |lines: Vec<(String, [Vec<f64>; 2], Stroke)>| {
         let all = |k: usize| lines.iter().flat_map(move |(_, costs, _)| costs[k].iter().copied());
         let are_gaps = all(0).any(|cost| cost < 0.0) && all(1).all(|gap| !gap.is_nan());
-        let (k, what) = if are_gaps { (1, " above the least") } else { (0, "") };
+        let (k, what) = if are_gaps { (1, " − least known") } else { (0, "") };
         let (x, scale) = cost_axis(&format!("final {symbol}{what}"), all(k));
         let marks = lines.iter().enumerate().flat_map(|(row, (_, costs, stroke))| {
             let costs: Vec<f64> = costs[k].iter().map(|cost| scale.drawn(*cost)).collect();

@@ -17,6 +17,9 @@ use crate::plot;
 /// Where tables are, beside the page.
 const TABLES_FOLDER: &str = "tables";
 
+/// Where figures are, beside the page.
+const FIGURES_FOLDER: &str = "figures";
+
 /// What the page is called.
 const PAGE: &str = "report.html";
 
@@ -60,7 +63,7 @@ impl<'a> Target<'a> {
 
     /// Into another folder.
     #[must_use]
-    pub fn into(self, out: &'a Path) -> Self {
+    pub fn with_folder(self, out: &'a Path) -> Self {
         Self { out, ..self }
     }
 
@@ -77,7 +80,7 @@ impl<'a> Target<'a> {
 pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, ReportError> {
     let folder = target.out;
     let runs = load(plan, store)?;
-    let kept = shown(folder).filter(|shown| *shown > runs.len() && !target.replace);
+    let kept = reported_runs(folder).filter(|shown| *shown > runs.len() && !target.replace);
     let targets = targets(plan, &runs);
     let analysis = Analysis::new(plan, &runs, &targets);
     let summary = render(&summary(plan, &runs, &targets)?)?;
@@ -91,7 +94,7 @@ pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, 
         charts.extend(own.charts);
         tables.extend(own.chart_tables);
         write_tables(&tables, &own.table_names, &folder.join(TABLES_FOLDER))?;
-        write_charts(&charts, &own.chart_names, &folder.join("figures"))?;
+        write_charts(&charts, &own.chart_names, &folder.join(FIGURES_FOLDER))?;
         let page = Page {
             name: &plan.name,
             findings: &findings,
@@ -102,7 +105,7 @@ pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, 
             files: &files(target.results),
             facts: &provenance(plan, store)?,
         };
-        for folder in [folder, &folder.join(TABLES_FOLDER), &folder.join("figures")] {
+        for folder in [folder, &folder.join(TABLES_FOLDER), &folder.join(FIGURES_FOLDER)] {
             remove_temporary(folder);
         }
         write_file(&path, page.html()?.as_bytes())?;
@@ -119,7 +122,7 @@ pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, 
 }
 
 /// How many runs the report in a folder shows, if there is one.
-fn shown(folder: &Path) -> Option<usize> {
+fn reported_runs(folder: &Path) -> Option<usize> {
     let table = folder.join(TABLES_FOLDER).join("runs.csv");
     let mut rows = csv::Reader::from_path(table).ok()?.into_byte_records();
     rows.try_fold(0, |count, row| row.is_ok().then_some(count + 1))

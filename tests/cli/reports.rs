@@ -46,7 +46,7 @@ fn a_report_of_more_runs_stays() {
     assert_eq!(looked.status.code(), Some(1), "{told}");
     assert!(stdout(&looked).contains("2 of 8 runs are stored so far"));
     assert!(told.contains("report.html shows 6 runs") && told.contains("--replace"), "{told}");
-    assert!(told.contains("6 other runs are stored"), "{told}");
+    assert!(told.contains("6 stored runs belong to another version of the experiment"), "{told}");
     assert!(report(&out) == complete);
 
     let elsewhere = folder.run(&["report", "out", "--out", "elsewhere"]);

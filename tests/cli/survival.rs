@@ -279,7 +279,7 @@ fn damaged_files_are_named_and_done_again() {
         let output = folder.run(&["run", "brief.toml", "--out", "calm"]);
         let told = stderr(&output);
         assert!(told.contains("47 of 48 runs are stored already"), "{told}");
-        assert!(told.contains(&named) && told.contains("now in calm/damaged"), "{told}");
+        assert!(told.contains(&named) && told.contains("moved to calm/damaged, "), "{told}");
         assert_eq!(fs::read(out.join(format!("damaged/{name}/{table}.parquet"))).unwrap(), half);
         assert_eq!(results(&out), calm);
     }

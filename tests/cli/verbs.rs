@@ -256,7 +256,7 @@ fn a_weight_that_is_too_small_is_told() {
         .with("weighed.toml", format!("{task}weights.base = 0.9999\n"));
     let output = folder.run(&["plan", "task.toml", "--family", "sine-polynomial"]);
     assert!(stdout(&output).contains("not stated     weights.base"), "{}", stdout(&output));
-    assert!(stderr(&output).contains("A `weights.base` above 0.9"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("Raise `weights.base` above 0.9"), "{}", stderr(&output));
     assert!(!stderr(&output).contains("more terms"), "{}", stderr(&output));
     let plan = json(&folder, &["plan", "weighed.toml", "--family", "sine-polynomial", "--json"]);
     assert_eq!((&plan["reached"], &plan["inherited"]), (&true.into(), &serde_json::json!([])));

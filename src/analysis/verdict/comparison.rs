@@ -150,17 +150,17 @@ impl<'a> Standings<'a> {
         self.order.iter().copied().filter(|&o| ranks[o] == rank).collect()
     }
 
-    /// Some optimisers in words, and what each has.
+    /// Some optimisers in words, and what each has. `places` is what one is called, and what is said behind several.
     fn of(&self, places: [&str; 2], level: &[usize], value: &dyn Fn(usize) -> String) -> String {
         let mut values: Vec<String> = level.iter().map(|&o| value(o)).collect();
         values.dedup();
-        let names = some_of(&self.names(level.iter().copied()), self.order.len() - 1);
-        match level {
-            [_] => format!("that of the {}, {names}, {}", places[0], values[0]),
-            _ if level.len() + self.level == self.order.len() => {
-                format!("that of {names}, which are level, {}", list(&values))
+        match &self.names(level.iter().copied())[..] {
+            [name] => format!("that of the {}, {name}, {}", places[0], values[0]),
+            [a, b] => format!("{} for {a} and {b}, {}", list(&values), places[1]),
+            names => {
+                let names = some_of(names, self.order.len() - 1);
+                format!("{} for {names}, {}", list(&values), places[1])
             }
-            _ => format!("that of the {}, {names}, which are level, {}", places[1], list(&values)),
         }
     }
 
@@ -171,10 +171,11 @@ impl<'a> Standings<'a> {
             if self.order.len() == 2 {
                 self.of(["other", ""], &second, value)
             } else if second == last {
-                self.of(["last", ""], &last, value)
+                self.of(["last", "which tie"], &last, value)
             } else {
-                let second = self.of(["runner-up", "runners-up"], &second, value);
-                format!("{second} and {}", self.of(["last", "last"], &last, value))
+                let comma = if second.len() == 1 { "" } else { "," };
+                let second = self.of(["runner-up", "tied as runners-up"], &second, value);
+                format!("{second}{comma} and {}", self.of(["last", "tied for last"], &last, value))
             }
         };
         let symbol = self.analysis.plan.cost_symbol();

@@ -107,16 +107,15 @@ fn equals_are_named_together() {
         &runs(&plan, |run| vec![(1, 9.0), (2, [1.0, 2.0, 2.0, 3.0, 3.0][run.optimiser])]),
     );
     let by = answer(&told, "By how much?");
-    let costs = "The median cost of random is f 1.000, that of the runners-up, de and pso, which are level, 2.000 and \
-                 that of the last, l-shade and cma-es, which are level, 3.000. A run of random ends lower than one of de \
-                 and pso with probability 1.00 (A12, ties count half).";
+    let costs = "The median cost of random is f 1.000, 2.000 for de and pso, tied as runners-up, and 3.000 for l-shade \
+                 and cma-es, tied for last. A run of random ends lower than one of de and pso with probability 1.00 (A12, \
+                 ties count half).";
     assert!(by.starts_with(costs), "{by}");
     let plan = functions(8, "name = ['sphere']", &["random", "de", "pso"]);
     let told =
         findings(&plan, &runs(&plan, |run| vec![(1, 9.0), (2, [1.0, 2.0, 2.0][run.optimiser])]));
     let by = answer(&told, "By how much?");
-    let costs =
-        "The median cost of random is f 1.000, that of both others, which are level, 2.000. A run";
+    let costs = "The median cost of random is f 1.000, 2.000 for de and pso, which tie. A run";
     assert!(by.starts_with(costs), "{by}");
 }
 

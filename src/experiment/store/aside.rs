@@ -1,4 +1,4 @@
-//! What is known of damaged batches, and those out of the way.
+//! Remembering damaged batches and moving them aside.
 
 use std::fs;
 use std::io;

@@ -1,4 +1,4 @@
-//! Whether the tables of a batch are what runs leave, whoever copied or wrote them.
+//! Checks that a batch's tables are what a run writes.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -68,26 +68,27 @@ fn check_runs(
         return Err(format!("holds {}, expected the run that it is named by", keys.join(", ")));
     }
     let formats = column(frame, runs::FORMAT, &DataType::UInt64)?.u64().map_err(reason)?;
-    let own: BooleanChunked = formats.iter().map(|format| Some(format == Some(FORMAT))).collect();
+    let is_ours: BooleanChunked =
+        formats.iter().map(|format| Some(format == Some(FORMAT))).collect();
     if formats.null_count() > 0 {
         return Err(null_in(runs::FORMAT));
     }
-    let frame = frame.filter(&own).map_err(reason)?;
+    let frame = frame.filter(&is_ours).map_err(reason)?;
     if frame.height() == 0 {
         return Ok((keys, HashMap::new()));
     }
     check_columns(&frame, runs::COLUMNS, &NULLABLE)?;
     check_finite(&frame, &[runs::COST, runs::SECONDS, runs::SECONDS_IN_PROBLEM])?;
-    let own = texts(&frame, runs::KEY)?;
+    let our_keys = texts(&frame, runs::KEY)?;
     let recipes = texts(&frame, runs::RECIPE)?;
-    for (key, recipe) in own.iter().flatten().zip(recipes.iter().flatten()) {
+    for (key, recipe) in our_keys.iter().flatten().zip(recipes.iter().flatten()) {
         if digest(recipe) != key {
             return Err(format!("has the run {key} with a recipe that gives another key"));
         }
     }
-    check_lists(&frame, own, lengths)?;
+    check_lists(&frame, our_keys, lengths)?;
     let costs = frame.column(runs::COST).map_err(reason)?.is_not_null();
-    let found = own.iter().flatten().map(str::to_owned).zip(costs.iter().flatten());
+    let found = our_keys.iter().flatten().map(str::to_owned).zip(costs.iter().flatten());
     Ok((keys, found.collect()))
 }
 
@@ -122,16 +123,16 @@ fn check_lists(frame: &DataFrame, keys: &StringChunked, lengths: &Lengths) -> Re
 }
 
 /// Whether traces are those of the runs that found something, each in order.
-fn check_trace(own: &DataFrame, found: &HashMap<String, bool>) -> Result<(), Reason> {
-    check_columns(own, traces::COLUMNS, &[])?;
-    check_finite(own, &[traces::COST])?;
-    let of_rows = texts(own, traces::KEY)?;
-    let evaluations = own.column(traces::EVALUATION).and_then(|c| c.u64()).map_err(reason)?;
-    let costs = own.column(traces::COST).and_then(|c| c.f64()).map_err(reason)?;
-    let rows = of_rows.iter().flatten().zip(evaluations.iter().flatten());
+fn check_trace(rows: &DataFrame, found: &HashMap<String, bool>) -> Result<(), Reason> {
+    check_columns(rows, traces::COLUMNS, &[])?;
+    check_finite(rows, &[traces::COST])?;
+    let keys = texts(rows, traces::KEY)?;
+    let evaluations = rows.column(traces::EVALUATION).and_then(|c| c.u64()).map_err(reason)?;
+    let costs = rows.column(traces::COST).and_then(|c| c.f64()).map_err(reason)?;
+    let steps = keys.iter().flatten().zip(evaluations.iter().flatten());
     let mut seen = HashSet::new();
     let mut before: Option<(&str, u64, f64)> = None;
-    for ((key, evaluation), cost) in rows.zip(costs.iter().flatten()) {
+    for ((key, evaluation), cost) in steps.zip(costs.iter().flatten()) {
         match before {
             Some((last, at, best)) if last == key => {
                 let is_in_order = at < evaluation && cost <= best;
@@ -154,11 +155,11 @@ fn check_trace(own: &DataFrame, found: &HashMap<String, bool>) -> Result<(), Rea
 }
 
 /// Whether clocks have a row for each of the traces.
-fn check_clock(own: &DataFrame, trace: &DataFrame) -> Result<(), Reason> {
-    check_columns(own, clocks::COLUMNS, &[])?;
-    check_finite(own, &[clocks::SECONDS])?;
+fn check_clock(rows: &DataFrame, trace: &DataFrame) -> Result<(), Reason> {
+    check_columns(rows, clocks::COLUMNS, &[])?;
+    check_finite(rows, &[clocks::SECONDS])?;
     let is_same = [traces::KEY, traces::EVALUATION].iter().all(|name| {
-        let columns = (own.column(name), trace.column(name));
+        let columns = (rows.column(name), trace.column(name));
         matches!(columns, (Ok(clock), Ok(trace)) if clock.equals(trace))
     });
     if is_same { Ok(()) } else { Err("does not have the rows of the batch's traces".to_owned()) }

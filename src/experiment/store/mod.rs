@@ -113,7 +113,7 @@ impl Store {
 
     /// The same, knowing how long the lists of a plan's runs should be.
     #[must_use]
-    pub(in crate::experiment) fn of(self, plan: &Plan) -> Self {
+    pub(in crate::experiment) fn knowing_lengths_of(self, plan: &Plan) -> Self {
         let mut lengths = HashMap::new();
         let mut of_space: HashMap<(usize, String), OfLists> = HashMap::new();
         for run in &plan.runs {
@@ -169,7 +169,7 @@ impl Store {
 }
 
 /// Has polars start its threads, if it has not, and says whether it could: elsewhere it would panic.
-pub(crate) fn start_threads() -> bool {
+pub(crate) fn start_polars_threads() -> bool {
     let sorted = caught(|| Series::new("".into(), [1, 0]).sort(SortOptions::default()));
     matches!(sorted, Ok(Ok(_)))
 }

@@ -25,7 +25,7 @@ pub(super) fn charts(best: &[BestMotion<'_>]) -> (Vec<Chart>, Option<Finding>) {
     let (mut charts, mut left_out) = (Vec::new(), Vec::new());
     for swept in Swept::ALL {
         let points = points(best, swept);
-        let (name, title, caption) = told(swept);
+        let (name, title, caption) = texts_of(swept);
         let Some(figure) = sweep(&points, swept, bound) else {
             left_out.extend(varies(&points).then_some(name));
             continue;
@@ -39,11 +39,11 @@ pub(super) fn charts(best: &[BestMotion<'_>]) -> (Vec<Chart>, Option<Finding>) {
         let (name, title) = (name.to_owned(), title.to_owned());
         charts.push(Chart { name, title, caption, table: "best".into(), figure });
     }
-    let told = |names: &[&str]| {
+    let explain = |names: &[&str]| {
         let why = format!("other settings have more than {MOST_PANELS} combinations");
         Finding::new("Which charts are left out?", format!("{}: {why}.", list(names)))
     };
-    let left_out = (!left_out.is_empty()).then(|| told(&left_out));
+    let left_out = (!left_out.is_empty()).then(|| explain(&left_out));
     charts.extend(pareto(&trades(best)).map(|figure| Chart {
         name: "pareto".to_owned(),
         title: "Residual against duration".to_owned(),
@@ -57,7 +57,7 @@ pub(super) fn charts(best: &[BestMotion<'_>]) -> (Vec<Chart>, Option<Finding>) {
 }
 
 /// Name, title and caption of a sweep's chart.
-fn told(swept: Swept) -> (&'static str, &'static str, &'static str) {
+fn texts_of(swept: Swept) -> (&'static str, &'static str, &'static str) {
     match swept {
         Swept::WeightBase => (
             "weight-sweep",
@@ -77,14 +77,14 @@ fn told(swept: Swept) -> (&'static str, &'static str, &'static str) {
         Swept::JerkLimit => (
             "jerk-sweep",
             "Limit on jerks",
-            "Duration of the best motion against the limit on jerks. Short dashes, where there are any, are the \
+            "Duration of the best motion against the limit on jerks. The dotted line, where there is one, is the \
              law that holds while jerk alone limits the motion, from the lowest limit on at which the goal is reached.",
         ),
         Swept::Terms => (
             "terms-sweep",
             "Number of terms",
-            "Cost of the best motion against the number of free coefficients per joint. Short dashes, where there are any, \
-             are the least cost found for motions of any shape, of piecewise constant jerk.",
+            "Cost of the best motion against the number of free coefficients per joint. The dotted line, where there is one, \
+             is the least cost found for motions of any shape, of piecewise constant jerk.",
         ),
         Swept::Pieces => (
             "pieces-sweep",

@@ -39,19 +39,19 @@ pub(super) fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
         chart(
             "joint-derivatives",
             "Joint rates, accelerations and jerks",
-            "Joint rates, accelerations and jerks of the best motion over time; short dashes are the limits.",
+            "Joint rates, accelerations and jerks of the best motion over time; dotted lines are the limits.",
             derivatives(motion, &task.limits),
         ),
         chart(
             "base-attitude",
             "Attitude of the base",
-            "ZYX Euler angles of the base over time; short dashes are the goal's.",
+            "ZYX Euler angles of the base over time; dotted lines are the goal's.",
             base_attitude(motion, task),
         ),
         chart(
             "snapshots",
             "The arm along the motion",
-            "The robot at equal distances of time, seen along one direction of inertial space; the dashed outline is the base in \
+            "The robot at equal distances of time, seen along one direction of inertial space; the dotted outline is the base in \
              its goal attitude, the orange line the way of the tool. Body and panels are drawn for the eye: the model knows mass, inertia and mount.",
             snapshots(motion, task),
         ),

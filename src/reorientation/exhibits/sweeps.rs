@@ -247,17 +247,16 @@ pub(super) fn sweep(points: &[Point], swept: Swept, bound: Option<f64>) -> Optio
         _ => &[Ordinate::Duration],
     };
     if let [facet] = &facets[..] {
-        let mut panels: Vec<Panel> = ordinates.iter().map(|o| drawing.panel(facet, *o)).collect();
-        let reference = match (swept, &combinations[..]) {
+        let mut reference = match (swept, &combinations[..]) {
             (Swept::Terms, [_]) => {
                 bound.map(|j| Line::level("free form, least found", j, drawing.settings()))
             }
             (Swept::JerkLimit, [only]) if !only.is_posed() => cube_root_law(&only.poses[0]),
             _ => None,
         };
-        if let Some(line) = reference {
-            panels[0] = drawing.panel_with(facet, ordinates[0], Some(line));
-        }
+        // The first ordinate alone has it.
+        let panel = |ordinate: &Ordinate| drawing.panel(facet, *ordinate, reference.take());
+        let panels: Vec<Panel> = ordinates.iter().map(panel).collect();
         let height = if panels.len() > 1 { 30.0 } else { 44.0 };
         return Some(Figure::column(panels, height));
     }
@@ -267,7 +266,7 @@ pub(super) fn sweep(points: &[Point], swept: Swept, bound: Option<f64>) -> Optio
     let across = facets.len().min(ACROSS);
     let mut panels: Vec<Panel> = Vec::new();
     for ordinate in ordinates {
-        panels.extend(facets.iter().map(|facet| drawing.panel(facet, *ordinate)));
+        panels.extend(facets.iter().map(|facet| drawing.panel(facet, *ordinate, None)));
         let rows = panels.len().next_multiple_of(across);
         let nothing = || Axis::linear("", [0.0, 1.0], 0.0);
         panels.resize_with(rows, || Panel::bare(nothing(), nothing(), Vec::new()));
@@ -280,11 +279,7 @@ impl Drawing<'_> {
         range(self.points.iter().map(|point| point.setting), 0.0)
     }
 
-    fn panel(&self, facet: &Facet<'_>, ordinate: Ordinate) -> Panel {
-        self.panel_with(facet, ordinate, None)
-    }
-
-    fn panel_with(
+    fn panel(
         &self,
         (title, combinations): &Facet<'_>,
         ordinate: Ordinate,
