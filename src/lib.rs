@@ -67,6 +67,8 @@ pub mod experiment;
 pub mod functions;
 pub mod input;
 pub mod optimiser;
+#[cfg(feature = "harness")]
+pub mod process;
 pub mod reorientation;
 #[cfg(feature = "harness")]
 pub mod report;

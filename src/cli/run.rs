@@ -42,6 +42,9 @@ pub(super) struct Run {
     /// Do again what is already stored
     #[arg(long)]
     fresh: bool,
+    /// Start the programs that a file of results names
+    #[arg(long)]
+    trust: bool,
     /// Say nothing of runs that end as they should
     #[arg(long)]
     quiet: bool,
@@ -67,7 +70,7 @@ impl Progress for Lines<'_> {
             cost if !cost.is_finite() => "nothing found".to_owned(),
             cost => format!("{} {}", subject.cost_symbol(), subject.cost_text(cost)),
         };
-        let (status, message) = (record.status.name(), record.status.message());
+        let (status, message) = (record.status.name(), &record.message);
         if self.quiet && message.is_empty() {
             return;
         }
@@ -104,6 +107,8 @@ impl Run {
         if let Some(evaluations) = self.budget.and_then(NonZeroU64::new) {
             experiment = experiment.with_budget(evaluations);
         }
+        self.tell_programs(&experiment)?;
+        experiment.ask_programs()?;
         let plan = experiment.plan()?;
         warn_of_subjects(&plan);
         let path = self.out.clone().unwrap_or_else(|| Path::new("results").join(&plan.name));
@@ -138,6 +143,33 @@ impl Run {
                 Ok(())
             }
         }
+    }
+
+    /// Says which programs the experiment starts. Those that a file of results names may come from anybody, and are started only
+    /// where the user says so.
+    fn tell_programs(&self, experiment: &Experiment) -> Result<(), CliError> {
+        let mut told = Vec::new();
+        let mut is_from_results = false;
+        for (command, is_kept) in experiment.programs() {
+            is_from_results |= is_kept;
+            let program = format!("`{command}` in {}", command.folder().display());
+            if !told.contains(&program) {
+                told.push(program);
+            }
+        }
+        for program in &told {
+            note!("note: this experiment starts {program}");
+        }
+        if !is_from_results || self.trust {
+            return Ok(());
+        }
+        if confirmed("Start what these results name? [y/N] ") {
+            return Ok(());
+        }
+        Err(CliError::Usage {
+            message: "these programs are named by a file of results, which may come from anybody".to_owned(),
+            help: Some("look at them, and pass --trust to start them".to_owned()),
+        })
     }
 
     fn run_missing(&self, folder: &Folder, shard: Option<Shard>) -> Result<(), CliError> {
@@ -186,6 +218,19 @@ fn check_possible(plan: &Plan, path: &Path) -> Result<(), CliError> {
         Some([reason, ..]) => Err(RunError::foreign(reason).into()),
         _ => Ok(()),
     }
+}
+
+/// Asks the user, where there is one.
+fn confirmed(question: &str) -> bool {
+    use std::io::{IsTerminal as _, Write as _};
+    if !std::io::stdin().is_terminal() || !std::io::stderr().is_terminal() {
+        return false;
+    }
+    let mut line = String::new();
+    let mut errors = std::io::stderr();
+    let asked = errors.write_all(question.as_bytes()).and_then(|()| errors.flush());
+    asked.and_then(|()| std::io::stdin().read_line(&mut line)).is_ok()
+        && ["y", "yes"].contains(&line.trim().to_lowercase().as_str())
 }
 
 /// The shard that `--shard` means here.

@@ -7,10 +7,12 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::external::ExternalTable;
 use super::identity::Identity;
 use super::subject::Instance;
 use crate::input::{Document, InputError};
 use crate::optimiser::{Optimiser, Settings};
+use crate::process::Command;
 use crate::search::{Failure, Oracle, Problem, Rng, Stop};
 
 /// One optimiser of the field.
@@ -37,9 +39,24 @@ pub struct Entrant {
     pub budget: Option<NonZeroU64>,
     /// None for an optimiser of the program that made the results.
     pub(super) optimiser: Option<Arc<dyn Optimiser>>,
-    /// Where it is one of the catalogue.
-    pub(super) catalogued: Option<Settings>,
+    pub(super) origin: Origin,
     pub(super) is_labelled: bool,
+}
+
+/// Where an entrant comes from.
+#[derive(Clone)]
+pub(super) enum Origin {
+    /// The catalogue.
+    Catalogue(Settings),
+    /// A program that an experiment file names.
+    External {
+        /// As the file has it.
+        table: Box<ExternalTable>,
+        /// What is started.
+        command: Command,
+    },
+    /// The program that made the experiment.
+    Outside,
 }
 
 impl fmt::Debug for Entrant {
@@ -91,7 +108,7 @@ impl From<Settings> for Entrant {
             seeds: None,
             budget: None,
             optimiser: Some(Arc::new(Catalogued(settings.clone()))),
-            catalogued: Some(settings),
+            origin: Origin::Catalogue(settings),
             is_labelled: false,
         }
     }
@@ -101,6 +118,15 @@ impl Entrant {
     /// An optimiser of one's own. `settings` is all that determines its runs beside the seed, a version of its
     /// code included: a stored run with the same is not done again.
     pub fn new(name: &str, settings: Identity, optimiser: impl Optimiser + 'static) -> Self {
+        Self::of(name, settings, Origin::Outside, optimiser)
+    }
+
+    pub(super) fn of(
+        name: &str,
+        settings: Identity,
+        origin: Origin,
+        optimiser: impl Optimiser + 'static,
+    ) -> Self {
         Self {
             label: name.to_owned(),
             kind: name.to_owned(),
@@ -111,7 +137,7 @@ impl Entrant {
             seeds: None,
             budget: None,
             optimiser: Some(Arc::new(optimiser)),
-            catalogued: None,
+            origin,
             is_labelled: false,
         }
     }
@@ -158,9 +184,38 @@ impl Entrant {
     pub(super) fn identity(&self) -> Value {
         let mut settings = self.settings.json().clone();
         remove_formulation(&mut settings);
-        match self.catalogued {
-            Some(_) => settings,
-            None => serde_json::json!({ "outside": self.kind, "settings": settings }),
+        match self.origin {
+            Origin::Catalogue(_) => settings,
+            Origin::External { .. } => serde_json::json!({ "external": settings }),
+            Origin::Outside => serde_json::json!({ "outside": self.kind, "settings": settings }),
+        }
+    }
+
+    /// The program that it starts, and whether the file that names it is one of results.
+    pub fn program(&self) -> Option<(&Command, bool)> {
+        match &self.origin {
+            Origin::External { table, command } => Some((command, table.is_kept())),
+            Origin::Catalogue(_) | Origin::Outside => None,
+        }
+    }
+
+    /// The settings that differ from the default, as a label has them.
+    pub(super) fn changed_settings(&self) -> Vec<String> {
+        match &self.origin {
+            Origin::Catalogue(settings) => settings.changed(),
+            Origin::External { table, .. } => table.settings(),
+            Origin::Outside => Vec::new(),
+        }
+    }
+
+    /// The same as results keep it.
+    pub(super) fn kept(self) -> Self {
+        match self.origin {
+            Origin::External { table, command } => {
+                let table = Box::new(table.kept(&command));
+                Self { origin: Origin::External { table, command }, ..self }
+            }
+            _ => self,
         }
     }
 }
@@ -212,7 +267,7 @@ impl OutsideTable {
             seeds: None,
             budget: None,
             optimiser: None,
-            catalogued: None,
+            origin: Origin::Outside,
             is_labelled: false,
         })
     }

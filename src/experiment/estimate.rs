@@ -71,7 +71,9 @@ fn kind<'a>(plan: &'a Plan, run: &RunSpec) -> Alike<'a> {
 /// A few runs of every kind, with the first seed, spread evenly over the kind's instances.
 fn choose(plan: &Plan) -> Vec<&RunSpec> {
     let mut kinds: BTreeMap<Alike<'_>, Vec<&RunSpec>> = BTreeMap::new();
-    for run in plan.runs.iter().filter(|run| run.seed == 1) {
+    // Programs are started by runs alone.
+    let is_tried = |run: &&RunSpec| run.seed == 1 && plan.optimisers[run.optimiser].program().is_none();
+    for run in plan.runs.iter().filter(is_tried) {
         kinds.entry(kind(plan, run)).or_default().push(run);
     }
     kinds.values().flat_map(|runs| spread(runs)).collect()
@@ -114,7 +116,7 @@ fn projected(plan: &Plan, run: &RunSpec, watch: &Watch) -> f64 {
     let problem = instance.subject.problem(&entrant.space(instance));
     // What cannot be run takes no time.
     let (Ok(whole), Ok(problem)) = (entrant.optimiser(), problem) else { return 0.0 };
-    let _ = caught(|| problem.prepare());
+    let _ = caught(|| problem.prepare(watch));
     let split = whole.parts();
     let (part, parts): (&dyn Optimiser, usize) =
         split.as_ref().map_or((whole, 1), |(part, parts)| (&**part, *parts));

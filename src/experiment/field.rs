@@ -12,7 +12,8 @@ use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
 
 use super::budget::BudgetTable;
-use super::entrant::{Entrant, OutsideTable};
+use super::entrant::{Entrant, Origin, OutsideTable};
+use super::external::ExternalTable;
 use super::subject::Instance;
 use crate::input::{Document, InputError, nearest, optional_count};
 use crate::optimiser::Settings;
@@ -24,9 +25,12 @@ pub(super) struct EntrantTable {
     /// Optimiser and settings.
     #[serde(default)]
     settings: Option<Spanned<Settings>>,
-    /// An optimiser of another program instead.
+    /// An optimiser of the program that made the results instead.
     #[serde(default)]
     outside: Option<Spanned<OutsideTable>>,
+    /// A program instead.
+    #[serde(default)]
+    external: Option<Spanned<ExternalTable>>,
     /// What to call it instead of its name and formulation.
     #[serde(default)]
     label: Option<Spanned<String>>,
@@ -41,8 +45,11 @@ pub(super) struct EntrantTable {
 /// The keys that stand beside an optimiser.
 const BESIDE: [&str; 3] = ["label", "seeds", "budget"];
 
-/// The key of an optimiser of another program.
+/// The key of an optimiser of the program that made the results.
 const OUTSIDE: &str = "outside";
+
+/// The key of a program, which stands where others have their name.
+const EXTERNAL: &str = "external";
 
 /// Most optimisers of a field; each takes some kilobytes, and a report compares every two.
 const MOST_OPTIMISERS: u64 = 10_000;
@@ -68,21 +75,25 @@ impl From<Entrant> for Entry {
 impl EntrantTable {
     /// The entrant that the table asks for.
     pub(super) fn entry(self, document: &Document) -> Result<Entry, InputError> {
-        let Self { settings, outside, label, seeds, budget } = self;
-        let (entrant, place) = match (settings, outside) {
-            (Some(_), Some(outside)) => {
+        let Self { settings, outside, external, label, seeds, budget } = self;
+        let (entrant, place) = match (settings, external, outside) {
+            (Some(_), _, Some(outside)) | (_, Some(_), Some(outside)) => {
                 let message = "found an optimiser beside `outside`, expected one of them";
                 return Err(document.error_at(outside.span(), message, None));
             }
-            (Some(settings), None) => {
+            (Some(settings), _, None) => {
                 let place = settings.span();
                 (Entrant::from(settings.into_inner()), place)
             }
-            (None, Some(outside)) => {
+            (None, Some(external), None) => {
+                let place = external.span();
+                (external.into_inner().entrant(document)?, place)
+            }
+            (None, None, Some(outside)) => {
                 let place = outside.span();
                 (outside.into_inner().entrant(document)?, place)
             }
-            (None, None) => return Err(no_optimiser(0..0, document)),
+            (None, None, None) => return Err(no_optimiser(0..0, document)),
         };
         let label_place = label.as_ref().map(Spanned::span);
         let budget_place = budget.as_ref().map(Spanned::span);
@@ -112,16 +123,24 @@ pub(super) struct WrittenEntrant<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     outside: Option<OutsideTable>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    external: Option<&'a ExternalTable>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     budget: Option<BudgetTable>,
 }
 
 impl<'a> WrittenEntrant<'a> {
     pub(super) fn of(entrant: &'a Entrant) -> Self {
+        let (settings, external, outside) = match &entrant.origin {
+            Origin::Catalogue(settings) => (Some(settings), None, None),
+            Origin::External { table, .. } => (None, Some(&**table), None),
+            Origin::Outside => (None, None, Some(OutsideTable::of(entrant))),
+        };
         Self {
             label: entrant.is_labelled.then_some(&*entrant.label),
             seeds: entrant.seeds,
-            settings: entrant.catalogued.as_ref(),
-            outside: entrant.catalogued.is_none().then(|| OutsideTable::of(entrant)),
+            settings,
+            outside,
+            external,
             budget: entrant.budget.map(|evaluations| BudgetTable { evaluations }),
         }
     }
@@ -146,7 +165,7 @@ pub(super) fn labelled(field: &[Entry], instances: &[Instance]) -> Vec<Entrant> 
         let entrant = entry.entrant.clone();
         let mut label = plain(&entrant);
         if count[&label] > 1 {
-            let changed = entrant.catalogued.as_ref().map_or_else(Vec::new, Settings::changed);
+            let changed = entrant.changed_settings();
             let own = entrant.budget.map(|evaluations| format!("budget={evaluations}"));
             for part in changed.into_iter().chain(own) {
                 label += " ";
@@ -213,10 +232,12 @@ fn combination_count(sweep: &DeValue<'_>) -> u64 {
 
 fn entrant_table<'i>(
     mut beside: DeTable<'i>,
-    choice: DeTable<'i>,
+    mut choice: DeTable<'i>,
     span: Range<usize>,
 ) -> Spanned<DeValue<'i>> {
-    if !choice.is_empty() {
+    if let Some((key, external)) = choice.remove_entry(EXTERNAL) {
+        beside.insert(key, external);
+    } else if !choice.is_empty() {
         let choice = Spanned::new(span.clone(), DeValue::Table(choice));
         beside.insert(Spanned::new(span.clone(), "settings".into()), choice);
     }
@@ -288,7 +309,7 @@ fn check_formulations(
 
 /// Whether a table has but one optimiser.
 fn check_choice(choice: &DeTable<'_>, document: &Document) -> Result<(), InputError> {
-    let known: Vec<&str> = Settings::all().iter().map(Settings::name).collect();
+    let known: Vec<&str> = Settings::all().iter().map(Settings::name).chain([EXTERNAL]).collect();
     let is_known = |key: &Spanned<DeString<'_>>| known.contains(&key.get_ref().as_ref());
     let unknown = choice.keys().find(|key| !is_known(key));
     let Some(key) = unknown.or_else(|| choice.keys().nth(1)).filter(|_| choice.len() > 1) else {

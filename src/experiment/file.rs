@@ -7,15 +7,18 @@ use std::sync::Arc;
 use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
 
 use super::budget::BudgetTable;
 use super::entrant::Entrant;
+use super::external::{ExternalProblem, ExternalProblemTable};
 use super::field::{self, EntrantTable, Entry, WrittenEntrant};
 use super::kind::{Registry, Source};
 use super::stored::ProblemTable;
 use super::subject::Instance;
 use super::targets::TargetTable;
 use crate::input::{Document, InputError, count, keep, nearest};
+use crate::process::Command;
 
 const DEFAULTS: &str = include_str!("defaults.toml");
 
@@ -52,6 +55,9 @@ struct FileTable {
     targets: Option<Spanned<TargetTable>>,
     #[serde(default)]
     problem: Vec<ProblemTable>,
+    /// Those of `problem` that are programs.
+    #[serde(default)]
+    external_problem: Vec<ExternalProblemTable>,
     optimiser: Spanned<Vec<EntrantTable>>,
 }
 
@@ -89,6 +95,7 @@ impl Experiment {
         let spaces = kind.map_or(&[][..], |kind| kind.spaces());
         let file: FileTable = document.parse_reshaped(&[DEFAULTS], |table| {
             keep(table, &KEYS);
+            part_programs(table);
             field::spell_out(table, spaces, document)
         })?;
         let field_place = file.optimiser.span();
@@ -98,7 +105,8 @@ impl Experiment {
             let message = "found no optimiser, expected at least one `[[optimiser]]`";
             return Err(document.error_at(field_place, message, None));
         }
-        let instances = file.problem.iter().map(|table| table.instance(document));
+        let programs = file.external_problem.into_iter().map(|table| table.instance(document));
+        let instances = file.problem.iter().map(|table| table.instance(document)).chain(programs);
         Ok(Self {
             name: file.name,
             seeds: file.seeds,
@@ -121,6 +129,21 @@ impl Experiment {
     /// optimiser and instance.
     pub fn seeds(&self) -> NonZeroU64 {
         self.seeds
+    }
+
+    /// The programs that it starts, and whether a file of results names them.
+    pub fn programs(&self) -> impl Iterator<Item = (&Command, bool)> {
+        let problems = self.instances.iter().filter_map(ExternalProblem::of);
+        let solvers = self.field.iter().filter_map(|entry| entry.entrant.program());
+        problems.map(ExternalProblem::program).chain(solvers)
+    }
+
+    /// Starts the programs that are problems and asks what problems they are, where that is not known.
+    pub fn ask_programs(&self) -> Result<(), InputError> {
+        for problem in self.instances.iter().filter_map(ExternalProblem::of) {
+            problem.ask().map_err(|failure| self.document.error_at(0..0, failure, None))?;
+        }
+        Ok(())
     }
 
     /// The same experiment with this number of seeds for every optimiser.
@@ -165,6 +188,9 @@ impl Experiment {
 
     /// The same experiment as it stands in a folder of results, and the files that it needs there.
     pub(super) fn kept(mut self) -> Result<(Self, Vec<(String, String)>), InputError> {
+        for entry in &mut self.field {
+            entry.entrant = entry.entrant.clone().kept();
+        }
         let kept = self.source.as_ref().map(|source| source.kept(&self.document)).transpose()?;
         let Some((source, files)) = kept.flatten() else { return Ok((self, Vec::new())) };
         self.source = Some(source);
@@ -186,9 +212,19 @@ impl Experiment {
         #[derive(Serialize)]
         struct Tail<'a> {
             #[serde(skip_serializing_if = "Vec::is_empty")]
-            problem: Vec<ProblemTable>,
+            problem: Vec<WrittenProblem>,
             optimiser: Vec<WrittenEntrant<'a>>,
         }
+        #[derive(Serialize)]
+        #[serde(untagged)]
+        enum WrittenProblem {
+            Program(Box<ExternalProblemTable>),
+            Stored(Box<ProblemTable>),
+        }
+        let problem = |instance: &Instance| match ExternalProblemTable::kept(instance) {
+            Some(program) => WrittenProblem::Program(Box::new(program)),
+            None => WrittenProblem::Stored(Box::new(ProblemTable::of(instance))),
+        };
         let wrong = |error: toml::ser::Error| error.to_string();
         let head = Head {
             name: &self.name,
@@ -197,7 +233,7 @@ impl Experiment {
             targets: &self.targets,
         };
         let tail = Tail {
-            problem: self.instances.iter().map(ProblemTable::of).collect(),
+            problem: self.instances.iter().map(problem).collect(),
             optimiser: self.field.iter().map(|e| WrittenEntrant::of(&e.entrant)).collect(),
         };
         let own = self.source.as_ref().map(|source| source.written()).transpose()?;
@@ -213,6 +249,26 @@ impl Experiment {
     pub fn embedded() -> Document {
         Document::embedded("default.toml", include_str!("../../experiments/default.toml"))
     }
+}
+
+/// Takes those of `problem`, one table or a list, that have an `external` into a list of their own.
+fn part_programs(table: &mut DeTable<'_>) {
+    let Some((key, problems)) = table.remove_entry("problem") else { return };
+    let span = problems.span();
+    let all = match problems.into_inner() {
+        DeValue::Array(all) => all,
+        one => DeArray::from_iter([Spanned::new(span.clone(), one)]),
+    };
+    let is_program = |problem: &Spanned<DeValue<'_>>| match problem.get_ref() {
+        DeValue::Table(problem) => problem.contains_key("external"),
+        _ => false,
+    };
+    let (programs, others): (Vec<_>, Vec<_>) = all.into_iter().partition(is_program);
+    let list = |problems: Vec<_>| {
+        Spanned::new(span.clone(), DeValue::Array(problems.into_iter().collect()))
+    };
+    table.insert(key, list(others));
+    table.insert(Spanned::new(span.clone(), "external_problem".into()), list(programs));
 }
 
 /// Whether every key of a file is somebody's.

@@ -4,6 +4,7 @@ mod budget;
 mod caught;
 mod entrant;
 mod estimate;
+mod external;
 mod field;
 mod file;
 mod folder;

@@ -74,6 +74,8 @@ pub struct Record {
     pub cost: f64,
     /// How the run ended.
     pub status: Status,
+    /// What there is to say beyond that; empty for most.
+    pub message: String,
     /// One row of the `runs` table.
     pub(super) row: DataFrame,
     /// The run's rows of the `traces` table.
@@ -100,10 +102,12 @@ impl Record {
         let cost = ended.cost();
         let row = row(plan, run, cost, &ended)?;
         let threads = ended.threads;
+        let message = message(&ended.status, &ended.oracle);
         let trace = ended.oracle.into_trace();
         Ok(Self {
             key: run.key.clone(),
             cost: cost.unwrap_or(f64::NAN),
+            message,
             status: ended.status,
             row,
             clock: clock_table(&run.key, &trace, threads)?,
@@ -119,6 +123,12 @@ impl Ended<'_> {
         judged
             .or_else(|| self.oracle.best().filter(|_| !self.is_unjudged).map(|b| b.evaluation.cost))
     }
+}
+
+/// What is to be said of a run beyond its status.
+fn message(status: &Status, oracle: &Oracle<'_>) -> String {
+    let told = [status.message()].into_iter().chain(oracle.remarks().iter().cloned());
+    told.filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
 /// The `runs` table.
@@ -168,7 +178,7 @@ fn row(
         runs::SECONDS => [seconds.as_secs_f64()],
         runs::SECONDS_IN_PROBLEM => [oracle.time_in_problem().as_secs_f64()],
         runs::STATUS => [status.name()],
-        runs::MESSAGE => [status.message()],
+        runs::MESSAGE => [message(status, oracle)],
         runs::VERSION => [env!("CARGO_PKG_VERSION")],
         runs::COMMIT => [git_version::git_version!(args = ["--always", "--dirty"], fallback = "unknown")],
         runs::CPU => [cpu()],

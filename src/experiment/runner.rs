@@ -179,14 +179,16 @@ fn one(
     let space = entrant.space(instance);
     let (problem, optimiser) = (instance.subject.problem(&space)?, entrant.optimiser()?);
     // What cannot be prepared is told of when it is evaluated.
-    let _ = caught(|| problem.prepare());
+    let _ = caught(|| problem.prepare(watch));
     let mut oracle = Oracle::new(&*problem, run.budget, watch);
-    let started = Instant::now();
     let outcome = caught(|| optimiser.minimise(&mut oracle, &mut Rng::new(run.seed)));
-    let seconds = started.elapsed();
+    let seconds = oracle.elapsed();
     let Some(mut status) = Status::from_outcome(outcome) else {
         return Ok(None);
     };
+    if watch.is_interrupted() && matches!(status, Status::Failed(_)) {
+        return Ok(None);
+    }
     let best = oracle.best();
     let judged =
         caught(|| best.map_or(Ok(None), |best| judge(&*instance.subject, &space, &best.x)));

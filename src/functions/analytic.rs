@@ -38,7 +38,9 @@ use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::search::{Bounds, Differentiable, Evaluation, Failure, Problem, Slopes, Subgradient};
+use crate::search::{
+    Bounds, Differentiable, Evaluation, Failure, Problem, Slopes, Subgradient, Watch,
+};
 
 /// A function of any number of variables with one known minimum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -214,7 +216,7 @@ impl Problem for Analytic {
         Some(0.0)
     }
 
-    fn prepare(&self) {
+    fn prepare(&self, _: &Watch) {
         self.rotation();
     }
 }

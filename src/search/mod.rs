@@ -117,13 +117,15 @@ mod rng;
 mod subgradient;
 mod terms;
 mod timed;
+mod watch;
 
 pub use evaluation::Evaluation;
 pub use failure::Failure;
-pub use oracle::{Best, Oracle, Stop, TracePoint, Watch};
+pub use oracle::{Best, Oracle, Stop, TracePoint};
 pub use points::{Bounds, BoundsError, Points, PointsIter, PointsIterMut};
 pub use problem::{Coarse, Composite, Differentiable, Problem, Slopes, Timed};
 pub use rng::Rng;
 pub use subgradient::Subgradient;
 pub use terms::{Linearisation, Multipliers, Piece, PieceId, Shape, Term};
 pub use timed::{Bend, ErrorSlopes, LinearLimit, LinearLimits, TimedWeights};
+pub use watch::Watch;

@@ -1,7 +1,5 @@
 //! The only door from an optimiser to a problem: it counts, keeps the best, and says when to stop.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use nalgebra::DMatrix;
@@ -14,6 +12,7 @@ use super::rng::Rng;
 use super::subgradient::Subgradient;
 use super::terms::{Linearisation, Multipliers, Shape};
 use super::timed::{Bend, ErrorSlopes, LinearLimits, TimedWeights};
+use super::watch::Watch;
 
 /// Why an optimiser has to stop.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -30,40 +29,6 @@ pub enum Stop {
     /// The problem failed, or was asked what it cannot be asked.
     #[error(transparent)]
     Failed(#[from] Failure),
-}
-
-/// Shared with whoever watches a run from outside.
-#[derive(Debug, Default)]
-pub struct Watch {
-    interrupted: Arc<AtomicBool>,
-    evaluations: AtomicU64,
-}
-
-impl Watch {
-    /// Asks every run to stop at its next evaluation.
-    pub fn interrupt(&self) {
-        self.interrupted.store(true, Ordering::Relaxed);
-    }
-
-    /// What is true once somebody asked, to be set by a signal.
-    pub fn flag(&self) -> Arc<AtomicBool> {
-        self.interrupted.clone()
-    }
-
-    /// Whether somebody asked.
-    pub fn is_interrupted(&self) -> bool {
-        self.interrupted.load(Ordering::Relaxed)
-    }
-
-    /// Evaluations made so far by all runs.
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations.load(Ordering::Relaxed)
-    }
-
-    /// Takes note of evaluations, made or, for a run that ends early, not to be made.
-    pub fn add_evaluations(&self, count: u64) {
-        self.evaluations.fetch_add(count, Ordering::Relaxed);
-    }
 }
 
 /// The best point so far.
@@ -102,6 +67,8 @@ pub struct Oracle<'a> {
     pub(super) budget: u64,
     pub(super) watch: &'a Watch,
     pub(super) started: Instant,
+    /// When the search ended, where that is not now.
+    pub(super) stopped: Option<Instant>,
     pub(super) in_problem: Duration,
     pub(super) evaluations: u64,
     pub(super) linearisations: u64,
@@ -117,6 +84,7 @@ pub struct Oracle<'a> {
     pub(super) trace: Vec<TracePoint>,
     /// Whether searches [`from_each`](Self::from_each) of several points run at the same time.
     pub(super) is_parallel: bool,
+    pub(super) remarks: Vec<String>,
 }
 
 impl<'a> Oracle<'a> {
@@ -128,6 +96,7 @@ impl<'a> Oracle<'a> {
             budget,
             watch,
             started: Instant::now(),
+            stopped: None,
             in_problem: Duration::ZERO,
             evaluations: 0,
             linearisations: 0,
@@ -140,7 +109,55 @@ impl<'a> Oracle<'a> {
             best_within: None,
             trace: Vec::new(),
             is_parallel: false,
+            remarks: Vec::new(),
         }
+    }
+
+    /// Lets the time of the search begin now, as where it is begun by a process that has to start first.
+    pub fn start_clock(&mut self) {
+        self.started = Instant::now();
+    }
+
+    /// Lets the time of the search end now, whatever is done before the run is.
+    pub fn stop_clock(&mut self) {
+        self.stopped = Some(Instant::now());
+    }
+
+    /// How long the search has taken so far.
+    pub fn elapsed(&self) -> Duration {
+        self.stopped.unwrap_or_else(Instant::now).duration_since(self.started)
+    }
+
+    /// Has a remark kept with the run, whatever comes of it.
+    pub fn remark(&mut self, remark: String) {
+        self.remarks.push(remark);
+    }
+
+    /// The remarks, in their order.
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+
+    /// Whether somebody wants the program to end.
+    pub fn is_interrupted(&self) -> bool {
+        self.watch.is_interrupted()
+    }
+
+    /// Whether the cost can be asked for as a sum of terms; see [`linearise`](Self::linearise).
+    pub fn has_terms(&self) -> bool {
+        self.problem.composite().is_some()
+    }
+
+    /// Whether costs have subgradients; see [`subgradient`](Self::subgradient).
+    pub fn has_subgradients(&self) -> bool {
+        self.problem.slopes().is_some()
+    }
+
+    /// Counts an evaluation of a point that is outside the box: its cost is infinite, and the problem is not asked.
+    pub fn refuse(&mut self) -> Result<(), Stop> {
+        self.check()?;
+        self.begin();
+        Ok(())
     }
 
     /// Has searches that do not depend on one another run at the same time, on the threads of the current pool. What they

@@ -9,6 +9,7 @@ use super::rng::Rng;
 use super::subgradient::Subgradient;
 use super::terms::{Linearisation, Multipliers};
 use super::timed::{Bend, ErrorSlopes, LinearLimits, TimedWeights};
+use super::watch::Watch;
 
 /// A box-bounded minimisation problem.
 pub trait Problem: Send + Sync {
@@ -32,8 +33,11 @@ pub trait Problem: Send + Sync {
         Ok(())
     }
 
-    /// Makes what all evaluations share, so that it is no part of the time of the first.
-    fn prepare(&self) {}
+    /// Makes what all evaluations share, so that it is no part of the time of the first. An evaluation that takes long may look
+    /// whether `watch` is interrupted, and fail then.
+    fn prepare(&self, watch: &Watch) {
+        let _ = watch;
+    }
 
     /// The least cost in the box, where it is known.
     fn least_cost(&self) -> Option<f64> {

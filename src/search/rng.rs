@@ -7,17 +7,25 @@ use rand_distr::{Distribution as _, StandardNormal};
 
 /// A stream of random numbers, fixed by its seed.
 #[derive(Debug, Clone)]
-pub struct Rng(ChaCha8Rng);
+pub struct Rng {
+    seed: u64,
+    stream: ChaCha8Rng,
+}
 
 impl Rng {
     /// The stream of a seed.
     pub fn new(seed: u64) -> Self {
-        Self(ChaCha8Rng::seed_from_u64(seed))
+        Self { seed, stream: ChaCha8Rng::seed_from_u64(seed) }
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
     }
 
     /// Uniform in `[0, 1)`, all 53 bits of the mantissa used.
     pub fn unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+        (self.stream.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// Uniform in `[lower, upper)`.
@@ -32,7 +40,7 @@ impl Rng {
 
     /// Normal, with mean 0 and standard deviation 1.
     pub fn normal(&mut self) -> f64 {
-        StandardNormal.sample(&mut self.0)
+        StandardNormal.sample(&mut self.stream)
     }
 
     /// Cauchy, with mode and median at `location` and quartiles `scale` away from it.

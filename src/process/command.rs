@@ -1,0 +1,155 @@
+//! What is started, and what determines what it does.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use sha2::{Digest as _, Sha256};
+
+use crate::search::Failure;
+
+/// A program with its arguments, and the files that determine what it does.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Command {
+    /// Program and arguments.
+    words: Vec<String>,
+    /// Where it is started, and where relative paths begin.
+    folder: PathBuf,
+    /// The SHA-256 of each file, by its name.
+    files: BTreeMap<String, String>,
+}
+
+/// How long a process is waited for; the time that this side takes does not count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Patience {
+    /// Until it says `hello`.
+    pub start: Duration,
+    /// Between an answer and its next message.
+    pub silence: Duration,
+    /// All of its own time after `hello`; `None` for no limit.
+    pub search: Option<Duration>,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self {
+            start: Duration::from_mins(1),
+            silence: Duration::from_mins(1),
+            search: None,
+        }
+    }
+}
+
+/// A command that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// There is no program.
+    #[error("found an empty command, expected a program and its arguments")]
+    Empty,
+    /// A file that determines what it does cannot be read.
+    #[error("cannot read {}: {source}", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What came of it.
+        source: std::io::Error,
+    },
+}
+
+impl Command {
+    /// Program and arguments, started in `folder`. Where no files are named they are those words of the command that are files
+    /// there, such as a script.
+    pub fn new(
+        words: Vec<String>,
+        folder: &Path,
+        files: Option<&[String]>,
+    ) -> Result<Self, CommandError> {
+        check(&words)?;
+        let named = match files {
+            Some(files) => files.to_vec(),
+            None => words.iter().filter(|word| folder.join(word).is_file()).cloned().collect(),
+        };
+        let digest = |name: String| {
+            let path = folder.join(&name);
+            match std::fs::read(&path) {
+                Ok(bytes) => Ok((name, hexadecimal(&Sha256::digest(bytes)))),
+                Err(source) => Err(CommandError::File { path, source }),
+            }
+        };
+        let files = named.into_iter().map(digest).collect::<Result<_, _>>()?;
+        Ok(Self { words, folder: folder.to_owned(), files })
+    }
+
+    /// One whose files are known by their digests, whether they are still there or not.
+    pub fn known(
+        words: Vec<String>,
+        folder: &str,
+        files: BTreeMap<String, String>,
+    ) -> Result<Self, CommandError> {
+        check(&words)?;
+        Ok(Self { words, folder: folder.into(), files })
+    }
+
+    /// Program and arguments.
+    pub fn words(&self) -> &[String] {
+        &self.words
+    }
+
+    /// Where it is started.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The SHA-256 of each file, by its name.
+    pub fn files(&self) -> &BTreeMap<String, String> {
+        &self.files
+    }
+
+    /// Whether the files are what they were when the command was made.
+    pub(super) fn check_files(&self) -> Result<(), Failure> {
+        for (name, digest) in &self.files {
+            let path = self.folder.join(name);
+            let found = std::fs::read(&path).map(|bytes| hexadecimal(&Sha256::digest(bytes)));
+            if found.is_err() {
+                return Err(format!("{} is gone", path.display()).into());
+            }
+            if found.is_ok_and(|found| found != *digest) {
+                let path = path.display();
+                return Err(format!("{path} is not what it was when the experiment was read").into());
+            }
+        }
+        Ok(())
+    }
+
+    /// The program as the system is asked for it. One with a separator in its name is sought in the folder, others in the search
+    /// path.
+    pub(super) fn to_std(&self) -> std::process::Command {
+        let program = Path::new(&self.words[0]);
+        let is_path = program.components().count() > 1;
+        let mut command = if is_path {
+            std::process::Command::new(self.folder.join(program))
+        } else {
+            std::process::Command::new(program)
+        };
+        command.args(&self.words[1..]).current_dir(&self.folder);
+        command
+    }
+}
+
+impl fmt::Display for Command {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words.join(" "))
+    }
+}
+
+fn check(words: &[String]) -> Result<(), CommandError> {
+    if words.first().is_none_or(String::is_empty) {
+        return Err(CommandError::Empty);
+    }
+    Ok(())
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

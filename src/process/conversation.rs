@@ -1,0 +1,144 @@
+//! Words with a process, within its deadlines.
+
+use std::time::{Duration, Instant};
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use super::child::{Child, Line};
+use super::command::{Command, Patience};
+use super::request::parsed;
+use crate::search::{Failure, Stop};
+
+/// How often an interruption is looked for.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// A process that is spoken with.
+#[derive(Debug)]
+pub(super) struct Conversation {
+    child: Child,
+    name: String,
+    patience: Patience,
+    /// How long it was waited for since it said `hello`.
+    waited: Duration,
+}
+
+impl Conversation {
+    /// Starts a process and says the first line.
+    pub(super) fn open(
+        command: &Command,
+        patience: Patience,
+        opening: String,
+    ) -> Result<Self, Failure> {
+        let child = Child::start(command)?;
+        child.say(opening);
+        let name = command.to_string();
+        Ok(Self { child, name, patience, waited: Duration::ZERO })
+    }
+
+    /// Says a line.
+    pub(super) fn say(&self, line: String) {
+        self.child.say(line);
+    }
+
+    /// Waits until it is ready; what it says of itself.
+    pub(super) fn greet<T: DeserializeOwned>(
+        &mut self,
+        is_interrupted: &dyn Fn() -> bool,
+    ) -> Result<T, Stop> {
+        #[derive(Deserialize)]
+        struct Greeting<T> {
+            hello: T,
+        }
+        let start = self.patience.start;
+        let line = self.line(start, is_interrupted, || {
+            format!("did not say `hello` within {} s", start.as_secs_f64())
+        })?;
+        match parsed::<serde_json::Value>(&line) {
+            Ok(value) if value.get("hello").is_none() => {
+                Err(self.failure("said something before it said `hello`").into())
+            }
+            Err(failure) => Err(self.failure(failure.reason()).into()),
+            Ok(_) => match parsed::<Greeting<T>>(&line) {
+                Ok(greeting) => Ok(greeting.hello),
+                Err(failure) => Err(self.failure(failure.reason()).into()),
+            },
+        }
+    }
+
+    /// The next line. Silence for so many times its patience, a line that is no text and its end are failures.
+    pub(super) fn hear(
+        &mut self,
+        times: u32,
+        is_interrupted: &dyn Fn() -> bool,
+    ) -> Result<String, Stop> {
+        let began = Instant::now();
+        let Patience { silence, search, .. } = self.patience;
+        let silence = silence.saturating_mul(times);
+        let left = search.map(|search| search.saturating_sub(self.waited));
+        let line = match (left, search) {
+            (Some(left), Some(search)) if left < silence => {
+                self.line(left, is_interrupted, || {
+                    format!("took more than {} s of its own time", search.as_secs_f64())
+                })
+            }
+            _ => self.line(silence, is_interrupted, || {
+                format!("said nothing for {} s", silence.as_secs_f64())
+            }),
+        };
+        self.waited += began.elapsed();
+        line
+    }
+
+    fn line(
+        &mut self,
+        patience: Duration,
+        is_interrupted: &dyn Fn() -> bool,
+        gave_out: impl Fn() -> String,
+    ) -> Result<String, Stop> {
+        let deadline = Instant::now().checked_add(patience);
+        let line = loop {
+            if is_interrupted() {
+                return Err(Stop::Interrupted);
+            }
+            let look = Instant::now() + LOOK;
+            if let Some(line) = self.child.next(deadline.map_or(look, |d| d.min(look))) {
+                break line;
+            }
+            if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+                return Err(self.failure(&gave_out()).into());
+            }
+        };
+        match line {
+            Line::Message(line) => Ok(line),
+            Line::NotText => Err(self.failure("sent a line that is not UTF-8").into()),
+            Line::TooLong => Err(self.failure("sent a line of more than 64 MiB").into()),
+            Line::End => Err(self.ended().into()),
+        }
+    }
+
+    /// Ends the process, with all that it has started.
+    pub(super) fn close(&mut self) {
+        self.child.end();
+    }
+
+    /// What it did wrong, with its last words. It is ended.
+    pub(super) fn failure(&mut self, what: &str) -> Failure {
+        self.child.end();
+        self.told(what)
+    }
+
+    fn ended(&mut self) -> Failure {
+        let status = self.child.end();
+        let how = status.map_or_else(|| "closed its output".to_owned(), |status| {
+            format!("ended ({status})")
+        });
+        self.told(&format!("{how} before it was done"))
+    }
+
+    fn told(&self, what: &str) -> Failure {
+        let words = self.child.last_words();
+        let words = if words.is_empty() { words } else { format!("; its last words: {words}") };
+        Failure::new(format!("`{}` {what}{words}", self.name))
+    }
+}

@@ -1,0 +1,241 @@
+//! Optimisers that are programs: what they may do, and what becomes of those that misbehave.
+#![cfg(unix)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use polars::prelude::*;
+
+const ZOO: &str = include_str!("zoo.py");
+
+/// What every solver of the zoo has to be told, beside what comes of it: status, evaluations, and what its record says.
+const SPECIES: [(&str, &str, u64, &str); 26] = [
+    ("behaves", "finished", 10, ""),
+    ("overruns-by-one", "budget-spent", 40, ""),
+    ("overruns-by-a-batch", "budget-spent", 40, ""),
+    ("prints", "finished", 10, ""),
+    ("exits-with-3", "failed", 5, "ended (exit status: 3) without `done`; its last words: no licence"),
+    ("is-killed", "failed", 5, "ended (signal: 9 (SIGKILL)) without `done`"),
+    ("hangs-at-start", "failed", 0, "did not say `hello` within 1.5 s"),
+    ("hangs-between", "failed", 5, "said nothing for 1 s"),
+    ("hangs-at-the-end", "finished", 5, ""),
+    ("ignores-signals", "finished", 5, ""),
+    ("leaves-grandchildren", "finished", 5, ""),
+    ("floods-stderr", "finished", 5, ""),
+    ("floods-stdout", "finished", 5, ""),
+    ("sends-nan", "finished", 1, "1 point outside the box cost infinitely much"),
+    ("sends-a-bare-nan", "failed", 0, "what is not finite is written \"nan\""),
+    ("sends-a-wrong-length", "failed", 0, "sent a point with 3 variables, expected 2"),
+    ("goes-outside", "finished", 5, "2 points outside the box cost infinitely much"),
+    ("sends-no-utf-8", "failed", 0, "sent a line that is not UTF-8"),
+    ("sends-a-long-line", "failed", 0, "sent a line of more than 64 MiB"),
+    ("sends-no-json", "failed", 0, "sent a line that cannot be read"),
+    ("says-no-hello", "failed", 0, "asked before it said `hello`"),
+    ("asks-after-stop", "budget-spent", 40, ""),
+    ("never-listens", "budget-spent", 40, ""),
+    ("asks-for-derivatives", "no-derivatives", 0, "the problem has no derivatives"),
+    ("searches-too-long", "failed", 4, "took more than 1.4 s of its own time"),
+    ("ends-without-done", "failed", 5, "ended (exit status: 0) without `done`"),
+];
+
+/// Runs `driftless` in a folder.
+fn driftless(folder: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_driftless"));
+    command.args(args).current_dir(folder).env("NO_COLOR", "1");
+    command.output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// All stored runs.
+fn runs(results: &Path) -> DataFrame {
+    let frames = fs::read_dir(results.join("runs")).unwrap().map(|entry| {
+        let file = fs::File::open(entry.unwrap().path()).unwrap();
+        ParquetReader::new(file).finish().unwrap()
+    });
+    frames.reduce(|all, more| all.vstack(&more).unwrap()).unwrap()
+}
+
+fn texts(frame: &DataFrame, column: &str) -> Vec<String> {
+    let texts = frame.column(column).unwrap().str().unwrap().iter();
+    texts.map(|text| text.unwrap_or_default().to_owned()).collect()
+}
+
+fn counts(frame: &DataFrame, column: &str) -> Vec<u64> {
+    frame.column(column).unwrap().u64().unwrap().iter().map(Option::unwrap).collect()
+}
+
+/// Processes that work in a folder.
+fn alive(folder: &Path) -> Vec<String> {
+    let folder = folder.canonicalize().unwrap();
+    let processes = fs::read_dir("/proc").unwrap().flatten().map(|entry| entry.path());
+    let inside = processes.filter(|process| {
+        fs::read_link(process.join("cwd")).is_ok_and(|cwd| cwd.starts_with(&folder))
+    });
+    inside.map(|process| fs::read_to_string(process.join("cmdline")).unwrap_or_default()).collect()
+}
+
+/// A folder with the zoo and an experiment on it.
+fn zoo(head: &str, species: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("zoo.py"), ZOO).unwrap();
+    let mut experiment = format!(
+        "name = 'zoo'\nseeds = 1\nbudget = {{ evaluations = 40 }}\n{head}\
+         functions = {{ name = ['sphere'], dimension = [2] }}\n"
+    );
+    for how in species {
+        experiment += &format!(
+            "[[optimiser]]\nlabel = '{how}'\nexternal = {{ command = ['python3', 'zoo.py', '{how}'], \
+             timeout = {{ start_s = 1.5, silence_s = 1, search_s = 1.4 }} }}\n"
+        );
+    }
+    fs::write(folder.path().join("zoo.toml"), experiment).unwrap();
+    folder
+}
+
+/// Every solver of the zoo runs to its record, which says what happened, and nothing of it stays alive.
+#[cfg(target_os = "linux")]
+#[test]
+fn every_end_is_told_and_nothing_stays_alive() {
+    let species: Vec<&str> = SPECIES.iter().map(|(how, ..)| *how).collect();
+    let folder = zoo("", &species);
+    let output = driftless(folder.path(), &["run", "zoo.toml", "--out", "out", "--jobs", "8"]);
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(said(&output).contains("starts `python3 zoo.py behaves`"), "{}", said(&output));
+    assert_eq!(alive(folder.path()), Vec::<String>::new());
+    let runs = runs(&folder.path().join("out"));
+    let (labels, statuses) = (texts(&runs, "optimiser"), texts(&runs, "status"));
+    let (evaluations, messages) = (counts(&runs, "evaluations"), texts(&runs, "message"));
+    let found: BTreeMap<&str, _> = (0..labels.len())
+        .map(|i| (&*labels[i], (&*statuses[i], evaluations[i], &*messages[i])))
+        .collect();
+    assert_eq!(found.len(), SPECIES.len());
+    for (how, status, evaluations, message) in SPECIES {
+        let found = found[how];
+        assert_eq!((found.0, found.1), (status, evaluations), "{how}: {}", found.2);
+        let fits = if message.is_empty() { found.2.is_empty() } else { found.2.contains(message) };
+        assert!(fits, "{how}: {}", found.2);
+    }
+}
+
+/// What misbehaves once it is asked more than five times, beside what the records say; nothing where runs end as they should.
+const PROBLEMS: [(&str, &str); 9] = [
+    ("behaves", ""),
+    ("prints", ""),
+    ("answers-not-finite", ""),
+    ("is-killed", "ended (signal: 9 (SIGKILL))"),
+    ("says-why-it-fails", "failed: no convergence at this point"),
+    ("hangs", "said nothing for"),
+    ("answers-too-few", "costs and"),
+    ("answers-another", "expected an answer to"),
+    ("sends-no-json", "sent a line that cannot be read"),
+];
+
+/// A folder with the problems and an experiment on some of them.
+fn problems(kinds: &[&str], optimisers: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("problems.py"), include_str!("problems.py")).unwrap();
+    let mut experiment =
+        "name = 'problems'\nseeds = 1\nbudget = { evaluations = 40 }\n".to_owned();
+    for how in kinds {
+        experiment += &format!(
+            "[[problem]]\nlabel = '{how}'\nexternal = {{ command = ['python3', 'problems.py', '{how}'], \
+             timeout = {{ start_s = 1.5, silence_s = 0.05 }} }}\n"
+        );
+    }
+    for optimiser in optimisers {
+        experiment += &format!("[[optimiser]]\n{optimiser} = {{}}\n");
+    }
+    fs::write(folder.path().join("problems.toml"), experiment).unwrap();
+    folder
+}
+
+/// Problems that are programs, raced by all optimisers that need no derivatives: what fails is a record that says why.
+#[cfg(target_os = "linux")]
+#[test]
+fn problems_fail_in_their_records_alone() {
+    let optimisers = ["random", "pso", "de", "l-shade", "nelder-mead", "cma-es"];
+    let kinds: Vec<&str> = PROBLEMS.iter().map(|(how, _)| *how).collect();
+    let folder = problems(&kinds, &optimisers);
+    let output = driftless(folder.path(), &["run", "problems.toml", "--out", "out", "--jobs", "4"]);
+    assert!(output.status.success(), "{}", said(&output));
+    assert_eq!(alive(folder.path()), Vec::<String>::new());
+    let runs = runs(&folder.path().join("out"));
+    let (labels, statuses) = (texts(&runs, "instance"), texts(&runs, "status"));
+    let messages = texts(&runs, "message");
+    assert_eq!(runs.height(), PROBLEMS.len() * optimisers.len());
+    for (how, message) in PROBLEMS {
+        for i in (0..labels.len()).filter(|&i| labels[i] == how) {
+            assert_eq!(statuses[i] == "failed", !message.is_empty(), "{how}: {}", messages[i]);
+            assert!(messages[i].contains(message), "{how}: {}", messages[i]);
+        }
+    }
+    // Reading what was found starts nothing, also where the program is gone.
+    fs::remove_file(folder.path().join("problems.py")).unwrap();
+    for verb in ["report", "status"] {
+        let read = driftless(folder.path(), &[verb, "out"]);
+        assert!(read.status.success(), "{verb}: {}", said(&read));
+    }
+    let again = driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out"]);
+    assert_eq!(again.status.code(), Some(2), "{}", said(&again));
+    assert!(said(&again).contains("--trust"), "{}", said(&again));
+}
+
+/// A program that does not say what problem it is: one error, and nothing is written.
+#[test]
+fn a_program_that_is_no_problem_is_refused() {
+    for (how, message) in [
+        ("hangs-at-start", "did not say `hello` within 1.5 s"),
+        ("tells-of-no-box", "expected the lower bound first"),
+        ("tells-of-too-few-bounds", "told of 3 variables, 2 lower and 2 upper bounds"),
+    ] {
+        let folder = problems(&[how], &["random"]);
+        let output = driftless(folder.path(), &["run", "problems.toml", "--out", "out"]);
+        assert_eq!(output.status.code(), Some(2), "{how}: {}", said(&output));
+        let error = said(&output).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(error.contains(message), "{how}: {error}");
+        assert!(!folder.path().join("out").exists());
+    }
+}
+
+/// Two solvers that differ in a file that they name are two, and one that has changed since is run again.
+#[test]
+fn an_edited_solver_is_another() {
+    let folder = zoo("", &["behaves"]);
+    let run = |args: &[&str]| driftless(folder.path(), &[&["run", "zoo.toml"], args].concat());
+    assert!(run(&["--out", "out"]).status.success());
+    let same = run(&["--out", "out"]);
+    assert!(said(&same).contains("1 of 1 runs are stored already"), "{}", said(&same));
+    let edited = ZOO.replace("ask_all(10)", "ask_all(11)");
+    fs::write(folder.path().join("zoo.py"), edited).unwrap();
+    let other = run(&["--out", "out"]);
+    assert!(other.status.success() && !said(&other).contains("stored already"), "{}", said(&other));
+    let mut evaluations = counts(&runs(&folder.path().join("out")), "evaluations");
+    evaluations.sort_unstable();
+    assert_eq!(evaluations, [10, 11]);
+}
+
+/// Files of results name programs that may come from anybody: nothing is started without a word from the user.
+#[test]
+fn programs_of_results_are_started_where_they_are_trusted() {
+    let folder = zoo("", &["behaves"]);
+    assert!(driftless(folder.path(), &["run", "zoo.toml", "--out", "out"]).status.success());
+    fs::remove_dir_all(folder.path().join("out/runs")).unwrap();
+    let refused = driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused).contains("starts `python3 zoo.py behaves`"), "{}", said(&refused));
+    let trusted =
+        driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out", "--trust"]);
+    assert!(trusted.status.success(), "{}", said(&trusted));
+    assert_eq!(counts(&runs(&folder.path().join("out")), "evaluations"), [10]);
+    // A file that is not what results were made with.
+    fs::remove_dir_all(folder.path().join("out/runs")).unwrap();
+    fs::write(folder.path().join("zoo.py"), "print('{\"hello\": {}}')").unwrap();
+    driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out", "--trust"]);
+    let messages = texts(&runs(&folder.path().join("out")), "message");
+    assert!(messages[0].contains("zoo.py is not what it was"), "{}", messages[0]);
+}
