@@ -299,8 +299,12 @@ fn what_may_be_whole_stays_where_it_is() {
     std::os::unix::fs::symlink("/proc/self/mem", file).unwrap();
     let folder = open(path);
     assert_eq!(load(&folder.plan, &folder.store).unwrap().len(), 4);
-    let told: Vec<_> =
-        folder.store.damaged().into_iter().map(|damage| (damage.path, damage.may_be_whole)).collect();
+    let told: Vec<_> = folder
+        .store
+        .damaged()
+        .into_iter()
+        .map(|damage| (damage.path, damage.may_be_whole))
+        .collect();
     assert_eq!(told, [(damaged.clone(), false), (file.clone(), true)]);
     let outcome = open(path).run(Options::default(), &Watch::default(), &());
     assert!(outcome.unwrap_err().to_string().contains("cannot be read"));

@@ -167,7 +167,8 @@ impl Run {
             return Ok(());
         }
         Err(CliError::Usage {
-            message: "these programs are named by a file of results, which may come from anybody".to_owned(),
+            message: "these programs are named by a file of results, which may come from anybody"
+                .to_owned(),
             help: Some("look at them, and pass --trust to start them".to_owned()),
         })
     }

@@ -64,7 +64,11 @@ struct DamageJson {
 
 impl From<Damage> for DamageJson {
     fn from(damage: Damage) -> Self {
-        Self { file: damage.path.display().to_string(), reason: damage.reason, may_be_whole: damage.may_be_whole }
+        Self {
+            file: damage.path.display().to_string(),
+            reason: damage.reason,
+            may_be_whole: damage.may_be_whole,
+        }
     }
 }
 

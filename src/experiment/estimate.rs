@@ -72,7 +72,8 @@ fn kind<'a>(plan: &'a Plan, run: &RunSpec) -> Alike<'a> {
 fn choose(plan: &Plan) -> Vec<&RunSpec> {
     let mut kinds: BTreeMap<Alike<'_>, Vec<&RunSpec>> = BTreeMap::new();
     // Programs are started by runs alone.
-    let is_tried = |run: &&RunSpec| run.seed == 1 && plan.optimisers[run.optimiser].program().is_none();
+    let is_tried =
+        |run: &&RunSpec| run.seed == 1 && plan.optimisers[run.optimiser].program().is_none();
     for run in plan.runs.iter().filter(is_tried) {
         kinds.entry(kind(plan, run)).or_default().push(run);
     }

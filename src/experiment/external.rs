@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -105,7 +106,7 @@ impl ExternalTable {
     /// What is started. Of results the files need not be there.
     fn command(&self, document: &Document) -> Result<Command, InputError> {
         let words = self.command.get_ref().clone();
-        let here = document.resolve("");
+        let here = document.resolve(".");
         let here = std::path::absolute(&here).unwrap_or(here);
         let command = match (&self.folder, &self.sha256) {
             (Some(folder), Some(files)) => Command::known(words, folder, files.clone()),
@@ -226,6 +227,11 @@ impl ExternalProblem {
     /// The program, and whether a file of results names it.
     pub(super) fn program(&self) -> (&Command, bool) {
         (self.program.command(), self.table.is_kept())
+    }
+
+    /// Where its command stands in the file.
+    pub(super) fn place(&self) -> Range<usize> {
+        self.table.command.span()
     }
 
     /// Asks the program what problem it is, unless that is known.

@@ -141,7 +141,8 @@ impl Experiment {
     /// Starts the programs that are problems and asks what problems they are, where that is not known.
     pub fn ask_programs(&self) -> Result<(), InputError> {
         for problem in self.instances.iter().filter_map(ExternalProblem::of) {
-            problem.ask().map_err(|failure| self.document.error_at(0..0, failure, None))?;
+            let error = |failure| self.document.error_at(problem.place(), failure, None);
+            problem.ask().map_err(error)?;
         }
         Ok(())
     }

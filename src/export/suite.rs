@@ -190,10 +190,7 @@ fn algorithms(plan: &Plan) -> Vec<Algorithm> {
 type Place = (usize, usize);
 
 /// The functions, where each instance of the plan is among them, and how many have a number that is not their own.
-fn functions(
-    plan: &Plan,
-    least: &[f64],
-) -> Result<(Vec<Function>, Vec<Place>, usize), SuiteError> {
+fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>, usize), SuiteError> {
     let mut renumbered = 0;
     let mut functions: Vec<Function> = Vec::new();
     let mut places = Vec::new();

@@ -66,8 +66,9 @@ impl<'a> Kind<'a> {
             kind.shared.retain(|setting| other.contains(setting));
         }
         let keys = kind.own_keys(first);
-        let is_long =
-            all.iter().any(|settings| text_width(&kind.name(head, settings), TEXT_PT) > LONGEST_NAME);
+        let is_long = all
+            .iter()
+            .any(|settings| text_width(&kind.name(head, settings), TEXT_PT) > LONGEST_NAME);
         let same_keys = others.iter().all(|other| kind.own_keys(other) == keys);
         kind.keys = (is_long && same_keys && keys.len() > 1).then_some(keys);
         kind

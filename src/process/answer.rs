@@ -99,12 +99,16 @@ impl<'a> Answer<'a> {
                 Shape::Max => "max",
                 Shape::Hinge => "hinge",
             },
-            pieces: term.pieces.iter().map(|piece| PieceTold {
-                track: piece.id.track,
-                place: piece.id.place,
-                value: Number(piece.value),
-                gradient: piece.gradient.iter().copied().map(Number).collect(),
-            }).collect(),
+            pieces: term
+                .pieces
+                .iter()
+                .map(|piece| PieceTold {
+                    track: piece.id.track,
+                    place: piece.id.place,
+                    value: Number(piece.value),
+                    gradient: piece.gradient.iter().copied().map(Number).collect(),
+                })
+                .collect(),
         });
         let terms = Some(terms.collect());
         Self { terms, ..Self::costs(id, &[found.evaluation()], true, left) }

@@ -221,9 +221,7 @@ mod group {
     use std::os::unix::process::CommandExt as _;
     use std::process::{Child, Command, Stdio};
 
-    use rustix::process::{
-        Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid,
-    };
+    use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 
     use crate::search::Failure;
 

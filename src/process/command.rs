@@ -33,11 +33,7 @@ pub struct Patience {
 
 impl Default for Patience {
     fn default() -> Self {
-        Self {
-            start: Duration::from_mins(1),
-            silence: Duration::from_mins(1),
-            search: None,
-        }
+        Self { start: Duration::from_mins(1), silence: Duration::from_mins(1), search: None }
     }
 }
 
@@ -116,7 +112,9 @@ impl Command {
             }
             if found.is_ok_and(|found| found != *digest) {
                 let path = path.display();
-                return Err(format!("{path} is not what it was when the experiment was read").into());
+                return Err(
+                    format!("{path} is not what it was when the experiment was read").into()
+                );
             }
         }
         Ok(())

@@ -77,11 +77,9 @@ impl Conversation {
         let silence = silence.saturating_mul(times);
         let left = search.map(|search| search.saturating_sub(self.waited));
         let line = match (left, search) {
-            (Some(left), Some(search)) if left < silence => {
-                self.line(left, is_interrupted, || {
-                    format!("took more than {} s of its own time", search.as_secs_f64())
-                })
-            }
+            (Some(left), Some(search)) if left < silence => self.line(left, is_interrupted, || {
+                format!("took more than {} s of its own time", search.as_secs_f64())
+            }),
             _ => self.line(silence, is_interrupted, || {
                 format!("said nothing for {} s", silence.as_secs_f64())
             }),
@@ -130,9 +128,8 @@ impl Conversation {
 
     fn ended(&mut self) -> Failure {
         let status = self.child.end();
-        let how = status.map_or_else(|| "closed its output".to_owned(), |status| {
-            format!("ended ({status})")
-        });
+        let how = status
+            .map_or_else(|| "closed its output".to_owned(), |status| format!("ended ({status})"));
         self.told(&format!("{how} before it was done"))
     }
 

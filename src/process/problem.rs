@@ -95,8 +95,7 @@ impl Program {
     /// Starts it and asks what problem it is, and for the cost in the middle of its box.
     pub fn ask(self: &Arc<Self>) -> Result<Told, Failure> {
         let (process, Hello { lower, upper, least_cost, .. }) = self.start(&never)?;
-        let mut told =
-            Told { lower: lower.0, upper: upper.0, least_cost, start_cost: f64::NAN };
+        let mut told = Told { lower: lower.0, upper: upper.0, least_cost, start_cost: f64::NAN };
         self.give_back(process);
         let middle: Vec<f64> =
             told.lower.iter().zip(&told.upper).map(|(a, b)| a + 0.5 * (b - a)).collect();
@@ -116,10 +115,7 @@ impl Program {
         })
     }
 
-    fn start(
-        &self,
-        is_interrupted: &dyn Fn() -> bool,
-    ) -> Result<(Conversation, Hello), Failure> {
+    fn start(&self, is_interrupted: &dyn Fn() -> bool) -> Result<(Conversation, Hello), Failure> {
         self.command.check_files()?;
         let opening = serde_json::json!({
             "driftless": VERSION, "role": "problem", "settings": self.settings,
@@ -190,9 +186,9 @@ impl Served {
             }
         }
         let Talk { process, failure, .. } = talk;
-        process.as_mut().ok_or_else(|| {
-            failure.clone().unwrap_or_else(|| Failure::new("there is no process"))
-        })
+        process
+            .as_mut()
+            .ok_or_else(|| failure.clone().unwrap_or_else(|| Failure::new("there is no process")))
     }
 
     /// A process that is the same problem as those before it.
@@ -214,10 +210,10 @@ impl Served {
         let process = self.process(&mut talk)?;
         process.say(answer::line(&Question { id, x: points.to_vec() }));
         let times = u32::try_from(points.len()).unwrap_or(u32::MAX);
-        let found = process
-            .hear(times, &|| self.is_interrupted())
-            .map_err(failed)
-            .and_then(|line| evaluations(&line, id, points.len()).map_err(|wrong| process.failure(&wrong)));
+        let found =
+            process.hear(times, &|| self.is_interrupted()).map_err(failed).and_then(|line| {
+                evaluations(&line, id, points.len()).map_err(|wrong| process.failure(&wrong))
+            });
         if let Err(failure) = &found {
             talk.process = None;
             talk.failure = Some(failure.clone());

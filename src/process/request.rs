@@ -117,7 +117,10 @@ mod tests {
     fn what_is_wrong_is_said() {
         let wrong = |line: &str| Request::read(line).unwrap_err().to_string();
         assert!(wrong(r#"{"x": [NaN]}"#).contains(r#"written "nan""#));
-        assert!(wrong(r#"{"linearize": [1]}"#).starts_with("sent `{\"linearize\": [1]}`, expected one of"));
+        assert!(
+            wrong(r#"{"linearize": [1]}"#)
+                .starts_with("sent `{\"linearize\": [1]}`, expected one of")
+        );
         assert!(wrong(r#"{"x": [1], "done": true}"#).contains("expected one of"));
         assert!(wrong(r#"{"x": [1, [2]]}"#).contains("numbers beside points"));
         assert!(wrong(r#"{"x": [[[2]]]}"#).contains("lists of points"));

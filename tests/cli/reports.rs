@@ -67,7 +67,8 @@ fn a_report_of_more_runs_stays() {
 /// One experiment file with one robot after another in `arm.toml`: each version that has runs is kept with its robot.
 #[test]
 fn robots_of_earlier_versions_are_kept() {
-    let task = OWN_ARM.replace("acceleration_deg_s2 = 70", "acceleration_deg_s2 = 70, jerk_deg_s3 = 80");
+    let task =
+        OWN_ARM.replace("acceleration_deg_s2 = 70", "acceleration_deg_s2 = 70, jerk_deg_s3 = 80");
     let text = SMALL.replace("functions = { name = ['sphere'], dimension = [3] }", &task);
     let mut folder = Folder::new().with("small.toml", text);
     for mass in ["mass = 600", "mass = 700", "mass = 800"] {
