@@ -27,7 +27,7 @@ pub(super) struct ExternalTable {
     name: Option<String>,
     /// Program and arguments.
     command: Spanned<Vec<String>>,
-    /// The files that determine what it does; without them those words of the command that are files.
+    /// The files that determine what it does; without them the arguments that are files, or else the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     files: Option<Vec<String>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -54,8 +54,8 @@ pub enum CommandError {
 }
 
 impl Command {
-    /// Program and arguments, started in `folder`. Where no files are named they are those words of the command that are files
-    /// there, such as a script.
+    /// Program and arguments, started in `folder`. Where no files are named they are the arguments that are files there, such as a
+    /// script, or else the program.
     pub fn new(
         words: Vec<String>,
         folder: &Path,
@@ -64,7 +64,7 @@ impl Command {
         check(&words)?;
         let named = match files {
             Some(files) => files.to_vec(),
-            None => words.iter().filter(|word| folder.join(word).is_file()).cloned().collect(),
+            None => scripts(&words, folder),
         };
         let digest = |name: String| {
             let path = folder.join(&name);
@@ -139,6 +139,15 @@ impl fmt::Display for Command {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.words.join(" "))
     }
+}
+
+/// The arguments that are files, such as a script for an interpreter; without any the program, if it is a file.
+fn scripts(words: &[String], folder: &Path) -> Vec<String> {
+    let files = |words: &[String]| -> Vec<String> {
+        words.iter().filter(|word| folder.join(word).is_file()).cloned().collect()
+    };
+    let arguments = files(&words[1..]);
+    if arguments.is_empty() { files(&words[..1]) } else { arguments }
 }
 
 fn check(words: &[String]) -> Result<(), CommandError> {
