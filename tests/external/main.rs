@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
 
 use polars::prelude::*;
 
@@ -125,6 +126,50 @@ fn every_end_is_told_and_nothing_stays_alive() {
         let fits = if message.is_empty() { found.2.is_empty() } else { found.2.contains(message) };
         assert!(fits, "{how}: {}", found.2);
     }
+}
+
+/// `driftless` killed in the middle: its solvers end with it, and the same command does what is missing.
+#[cfg(target_os = "linux")]
+#[test]
+fn solvers_end_with_a_killed_program_and_runs_resume() {
+    let folder = zoo("", &["takes-its-time"]);
+    let args = ["run", "zoo.toml", "--out", "out", "--seeds", "12", "--jobs", "2"];
+    let mut killed = Command::new(env!("CARGO_BIN_EXE_driftless"))
+        .args(args)
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let stored = || {
+        let runs = fs::read_dir(folder.path().join("out/runs")).into_iter().flatten().flatten();
+        runs.filter(|entry| entry.path().extension().is_some_and(|e| e == "parquet")).count()
+    };
+    wait_until(|| stored() > 1);
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    wait_until(|| alive(folder.path()).is_empty());
+    let before = stored();
+    assert!((2..12).contains(&before), "{before}");
+    let again = driftless(folder.path(), &args);
+    assert!(again.status.success(), "{}", said(&again));
+    assert!(said(&again).contains(" of 12 runs are stored already"), "{}", said(&again));
+    let runs = runs(&folder.path().join("out"));
+    assert_eq!(counts(&runs, "evaluations"), [10; 12]);
+    let mut seeds = counts(&runs, "seed");
+    seeds.sort_unstable();
+    assert_eq!(seeds, (1..=12).collect::<Vec<u64>>());
+}
+
+/// Waits for what is certain to come, at most as long as a test may hang.
+fn wait_until(holds: impl Fn() -> bool) {
+    for _ in 0..6000 {
+        if holds() {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    panic!("did not happen within a minute");
 }
 
 /// What misbehaves once it is asked more than five times, beside what the records say; nothing where runs end as they should.

@@ -39,6 +39,10 @@ if how == "says-no-hello":
 say({"hello": {"name": how}})
 if how == "behaves":
     ask_all(10)
+elif how == "takes-its-time":
+    for i in range(10):
+        time.sleep(0.03)
+        ask(point(i))
 elif how == "overruns-by-one":
     ask_all(budget + 1)
     ask_all(1)
