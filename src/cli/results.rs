@@ -24,6 +24,23 @@ impl ResultsFolder {
     }
 }
 
+/// Where the results of several experiments are.
+#[derive(Debug, Args)]
+pub(super) struct ResultsFolders {
+    /// Folders of results; several are reported as one experiment
+    #[arg(value_name = "DIR", default_value = "results/default")]
+    folders: Vec<PathBuf>,
+}
+
+impl ResultsFolders {
+    /// Reads the experiments that the folders keep. Nothing is written.
+    pub(super) fn open(&self) -> Result<Vec<Folder>, CliError> {
+        start_all_threads()?;
+        let registry = registry();
+        self.folders.iter().map(|folder| Ok(Folder::open(folder, &registry)?)).collect()
+    }
+}
+
 /// Starts the threads that work on results is shared out to, those of polars among them.
 pub(super) fn start_all_threads() -> Result<(), CliError> {
     super::start_worker_threads()?;

@@ -137,7 +137,7 @@ impl Run {
                 Ok(())
             }
             _ => {
-                if let Some(kept) = report(&folder, &Target::of(&path))? {
+                if let Some(kept) = report(&folder.plan, &[&folder.store], &Target::of(&path))? {
                     note!("note: {kept}; `driftless report --replace` replaces it");
                 }
                 Ok(())

@@ -52,6 +52,21 @@ pub fn load(plan: &Plan, store: &Store) -> Result<Vec<Run>, StoreError> {
     Ok(runs.into_iter().flatten().collect())
 }
 
+/// The stored runs of a plan, of several stores; the first that has a run gives it.
+pub fn load_all(plan: &Plan, stores: &[&Store]) -> Result<Vec<Run>, StoreError> {
+    let mut found: Vec<Option<Run>> = Vec::new();
+    found.resize_with(plan.runs.len(), || None);
+    let places = plan.places();
+    for store in stores {
+        for run in load(plan, store)? {
+            if let Some(&place) = places.get(run.key.as_str()) {
+                found[place].get_or_insert(run);
+            }
+        }
+    }
+    Ok(found.into_iter().flatten().collect())
+}
+
 /// The columns of `runs` that are read.
 struct Columns<'a> {
     key: &'a StringChunked,

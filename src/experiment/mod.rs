@@ -1,5 +1,6 @@
 //! From an experiment to stored runs: file, plan, runner, store.
 
+mod beside;
 mod budget;
 mod caught;
 mod entrant;
@@ -31,7 +32,7 @@ pub use file::Experiment;
 pub use folder::{Folder, FolderError, Options};
 pub use identity::Identity;
 pub use kind::{Kind, Registry, Source};
-pub use load::load;
+pub use load::{load, load_all};
 pub use plan::{Plan, RunSpec};
 pub use record::{Record, Status};
 pub use run::{Improvement, Run, best_run};

@@ -109,7 +109,7 @@ impl Experiment {
         Err(self.document.error_at(self.field_place.clone(), message, Some(help)))
     }
 
-    fn spelt_out(
+    pub(super) fn spelt_out(
         &self,
         instances: Vec<Instance>,
         optimisers: Vec<Entrant>,
@@ -223,7 +223,7 @@ fn runs(
 ) -> Vec<RunSpec> {
     let mut runs = Vec::new();
     for (i, instance) in instances.iter().enumerate() {
-        let subject = identity(instance);
+        let subject = problem_identity(instance);
         for (o, entrant) in optimisers.iter().enumerate() {
             let budget = entrant.budget.or(instance.budget).unwrap_or(budget).get();
             let (optimiser, space) = (entrant.identity(), entrant.space(instance));
@@ -259,7 +259,7 @@ struct Recipe<'a> {
 }
 
 /// Which problem an instance is.
-fn identity(instance: &Instance) -> serde_json::Value {
+pub(super) fn problem_identity(instance: &Instance) -> serde_json::Value {
     let subject = &instance.subject;
     serde_json::json!({
         "kind": subject.kind(),
@@ -316,7 +316,7 @@ impl Plan {
     pub fn problems(&self) -> Vec<usize> {
         let mut first = HashMap::new();
         let same = |(i, instance): (usize, &Instance)| {
-            *first.entry(identity(instance).to_string()).or_insert(i)
+            *first.entry(problem_identity(instance).to_string()).or_insert(i)
         };
         self.instances.iter().enumerate().map(same).collect()
     }

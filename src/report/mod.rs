@@ -12,4 +12,4 @@ mod provenance;
 mod write;
 
 pub use error::ReportError;
-pub use write::{Report, Target, write};
+pub use write::{Report, Target, write, write_all};

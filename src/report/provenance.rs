@@ -31,7 +31,7 @@ const COLUMNS: [(&str, &str); 3] =
     [(runs::VERSION, "Version of driftless"), (runs::COMMIT, "Commit"), (runs::CPU, "Processor")];
 
 /// What the stored runs of a plan say of how they were made. Nothing depends on when it is asked.
-pub(super) fn provenance(plan: &Plan, store: &Store) -> Result<Vec<Fact>, StoreError> {
+pub(super) fn provenance(plan: &Plan, stores: &[&Store]) -> Result<Vec<Fact>, StoreError> {
     let planned = plan.places();
     let wanted = |key: &str| planned.contains_key(key);
     let own = plan.facts().iter().filter_map(|f| Some((f.name.as_str(), f.provenance.as_deref()?)));
@@ -46,16 +46,18 @@ pub(super) fn provenance(plan: &Plan, store: &Store) -> Result<Vec<Fact>, StoreE
     let mut names: Vec<&str> = COLUMNS.iter().map(|(column, _)| *column).collect();
     names.extend([runs::STATUS, runs::KEY, runs::DATE]);
     let optional: Vec<&str> = own.iter().map(|(column, _)| *column).collect();
-    store.visit("runs", &names, &optional, wanted, |frame| {
-        for ((name, _), counts) in columns.iter().zip(&mut counts) {
-            counts.add(frame.column(name)?)?;
-        }
-        dates.add(frame.column(runs::DATE)?)
-    })?;
     let mut threads = Counts::default();
-    store.visit("clocks", &[clocks::KEY, clocks::THREADS], &[], wanted, |frame| {
-        threads.add(&one_row_per_run(frame)?)
-    })?;
+    for store in stores {
+        store.visit("runs", &names, &optional, wanted, |frame| {
+            for ((name, _), counts) in columns.iter().zip(&mut counts) {
+                counts.add(frame.column(name)?)?;
+            }
+            dates.add(frame.column(runs::DATE)?)
+        })?;
+        store.visit("clocks", &[clocks::KEY, clocks::THREADS], &[], wanted, |frame| {
+            threads.add(&one_row_per_run(frame)?)
+        })?;
+    }
     let named = columns.iter().map(|(_, name)| *name).zip(counts);
     let facts = named.chain([("Runs at a time", threads)]);
     let facts = facts.map(|(name, counts)| Fact { name: name.to_owned(), values: counts.values() });

@@ -10,7 +10,7 @@ use super::provenance::provenance;
 use crate::analysis::tables::NAMES as TABLES;
 use crate::analysis::{Analysis, csv as csv_text, latex, markdown, render, summary, targets};
 use crate::exhibit::{Chart, Finding, Table};
-use crate::experiment::{Plan, Run, Store, load};
+use crate::experiment::{Plan, Run, Store, load_all};
 use crate::output::{create_folder, remove_temporary, write_file};
 use crate::plot;
 
@@ -47,8 +47,8 @@ pub struct Report {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Target<'a> {
-    /// The folder of the results.
-    pub results: &'a Path,
+    /// The folders of the results.
+    pub results: Vec<&'a Path>,
     /// The folder that page, `tables/` and `figures/` are written into.
     pub out: &'a Path,
     /// Whether to replace a report there of more runs.
@@ -58,13 +58,12 @@ pub struct Target<'a> {
 impl<'a> Target<'a> {
     /// Beside the results, unless a report of more runs is there.
     pub fn of(results: &'a Path) -> Self {
-        Self { results, out: results, replace: false }
+        Self { results: vec![results], out: results, replace: false }
     }
 
-    /// Into another folder.
-    #[must_use]
-    pub fn with_folder(self, out: &'a Path) -> Self {
-        Self { out, ..self }
+    /// Of one or several folders of results into another folder.
+    pub fn of_all(results: Vec<&'a Path>, out: &'a Path) -> Self {
+        Self { results, out, replace: false }
     }
 
     /// Also in place of a report of more runs.
@@ -78,8 +77,17 @@ impl<'a> Target<'a> {
 /// that these runs do not give are removed; but a report of more runs than are stored now stays as it is, unless the target
 /// says otherwise.
 pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, ReportError> {
+    write_all(plan, &[store], target)
+}
+
+/// The same of several stores, for a plan of experiments [side by side](Plan::beside).
+pub fn write_all(
+    plan: &Plan,
+    stores: &[&Store],
+    target: &Target<'_>,
+) -> Result<Report, ReportError> {
     let folder = target.out;
-    let runs = load(plan, store)?;
+    let runs = load_all(plan, stores)?;
     let kept = reported_runs(folder).filter(|shown| *shown > runs.len() && !target.replace);
     let targets = targets(plan, &runs);
     let analysis = Analysis::new(plan, &runs, &targets);
@@ -102,8 +110,12 @@ pub fn write(plan: &Plan, store: &Store, target: &Target<'_>) -> Result<Report, 
             motions_found: own.scenes_found,
             charts: &charts,
             tables: &tables,
-            files: &files(target.results),
-            facts: &provenance(plan, store)?,
+            files: &target
+                .results
+                .iter()
+                .flat_map(|folder| files(folder, target.results.len() > 1))
+                .collect::<Vec<_>>(),
+            facts: &provenance(plan, stores)?,
         };
         for folder in [folder, &folder.join(TABLES_FOLDER), &folder.join(FIGURES_FOLDER)] {
             remove_temporary(folder);
@@ -168,9 +180,11 @@ fn remove<'a>(folder: &Path, names: impl Iterator<Item = &'a &'a str>, extension
     }
 }
 
-/// The files that made the experiment, of those that are there.
-fn files(folder: &Path) -> Vec<(String, String)> {
+/// The files that made the experiment, of those that are there; of several experiments with their folder's name.
+fn files(folder: &Path, is_one_of_many: bool) -> Vec<(String, String)> {
     let text = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
     let files = ["experiment.toml", "robot.toml"].into_iter();
-    files.filter_map(|name| Some((name.to_owned(), text(name)?))).collect()
+    let own = folder.file_name().filter(|_| is_one_of_many);
+    let own = own.map_or_else(String::new, |own| format!("{}-", own.display()));
+    files.filter_map(|name| Some((format!("{own}{name}"), text(name)?))).collect()
 }

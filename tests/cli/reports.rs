@@ -130,3 +130,65 @@ fn listed_labels_are_those_of_today() {
         assert!(own.len() == 3 && own.iter().all(|one| *one == own[0]), "{label}: {own:?}");
     }
 }
+
+/// An experiment, and the same in two parts whose folders have its runs: reported together they are the whole.
+#[test]
+fn parts_of_an_experiment_together_are_the_whole() {
+    let whole = "name = 'whole'\nseeds = 3\nbudget = { evaluations = 600 }\n\
+        functions = { name = ['sphere', 'rastrigin'], dimension = [3], instances = 2 }\n\
+        [[optimiser]]\npso = { population = 20 }\n[[optimiser]]\nde = {}\n[[optimiser]]\nrandom = {}\n";
+    let without = |texts: &[&str]| texts.iter().fold(whole.to_owned(), |t, s| t.replace(s, ""));
+    let folder = Folder::new()
+        .with("whole.toml", whole)
+        .with("sphere.toml", without(&[", 'rastrigin'"]))
+        .with("rastrigin.toml", without(&["'sphere', "]))
+        .with("swarms.toml", without(&["[[optimiser]]\nde = {}\n", "[[optimiser]]\nrandom = {}\n"]))
+        .with("others.toml", without(&["[[optimiser]]\npso = { population = 20 }\n"]));
+    run(&folder, &["whole.toml", "--out", "whole"]);
+    let path = |name: &str| folder.path().join(name);
+    let tables = |folder: &Path| -> BTreeMap<String, Vec<u8>> {
+        let files = report(folder).into_iter();
+        files.filter(|(name, _)| name.starts_with("tables/") || name.ends_with(".svg")).collect()
+    };
+    for parts in [["sphere", "rastrigin"], ["swarms", "others"]] {
+        for part in parts {
+            for table in ["runs", "traces", "clocks"] {
+                fs::create_dir_all(path(part).join(table)).unwrap();
+                for entry in fs::read_dir(path("whole").join(table)).unwrap().map(Result::unwrap) {
+                    fs::copy(entry.path(), path(part).join(table).join(entry.file_name())).unwrap();
+                }
+            }
+            let file = format!("{part}.toml");
+            let done = folder.run(&["run", &file, "--out", part]);
+            assert!(stderr(&done).contains("are stored already"), "{}", stderr(&done));
+        }
+        let together = format!("{}-and-{}", parts[0], parts[1]);
+        let alone = folder.run(&["report", parts[0], parts[1]]);
+        assert!(stderr(&alone).contains("expected --out"), "{}", stderr(&alone));
+        let output = folder.run(&["report", parts[0], parts[1], "--out", &together]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let (found, expected) = (tables(&path(&together)), tables(&path("whole")));
+        assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
+        for (name, bytes) in found {
+            assert!(bytes == expected[&name], "{together}: {name}");
+        }
+    }
+}
+
+/// Different settings under one label, and different robots under none, keep their folder's name.
+#[test]
+fn what_differs_between_experiments_is_told_apart() {
+    let folder = Folder::new()
+        .with("small.toml", SMALL.replace("seeds = 3", "seeds = 1"))
+        .with("large.toml", SMALL.replace("seeds = 3", "seeds = 1").replace("= 20", "= 30"));
+    run(&folder, &["small.toml", "--out", "twenty"]);
+    run(&folder, &["large.toml", "--out", "thirty"]);
+    let output = folder.run(&["report", "twenty", "thirty", "--out", "both"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let table = fs::read_to_string(folder.path().join("both/tables/summary.csv")).unwrap();
+    for label in ["pso (twenty)", "pso (thirty)", "random"] {
+        assert_eq!(table.matches(&format!(",{label},")).count(), 1, "{label}: {table}");
+    }
+    let twice = folder.run(&["report", "twenty", "twenty", "--out", "both"]);
+    assert!(stderr(&twice).contains("one folder of results twice"), "{}", stderr(&twice));
+}
