@@ -121,7 +121,16 @@ impl Entrant {
         Self::of(name, settings, Origin::Outside, optimiser)
     }
 
-    pub(super) fn of(
+    /// A program that an experiment file names.
+    pub(super) fn external(table: ExternalTable, document: &Document) -> Result<Self, InputError> {
+        let solver = table.solver(document)?;
+        let command = solver.command().clone();
+        let (name, identity) = (table.name(&command), table.identity(&command));
+        let origin = Origin::External { table: Box::new(table), command };
+        Ok(Self::of(&name, identity, origin, solver))
+    }
+
+    fn of(
         name: &str,
         settings: Identity,
         origin: Origin,

@@ -10,7 +10,6 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::entrant::{Entrant, Origin};
 use super::identity::Identity;
 use super::plain::PLAIN;
 use super::subject::{Instance, Subject};
@@ -115,7 +114,7 @@ impl ExternalTable {
         command.map_err(|error| document.error_at(self.command.span(), error.to_string(), None))
     }
 
-    fn name(&self, command: &Command) -> String {
+    pub(super) fn name(&self, command: &Command) -> String {
         self.name.clone().unwrap_or_else(|| name_of(command))
     }
 
@@ -125,26 +124,22 @@ impl ExternalTable {
     }
 
     /// All that determines what it does.
-    fn identity(&self, command: &Command) -> Identity {
+    pub(super) fn identity(&self, command: &Command) -> Identity {
         let files = serde_json::to_value(command.files()).unwrap_or_default();
         Identity::of(serde_json::json!({
             "command": command.words(), "files": files, "settings": self.told_settings(),
         }))
     }
 
-    /// The entrant that it is.
-    pub(super) fn entrant(self, document: &Document) -> Result<Entrant, InputError> {
+    /// The optimiser that it is.
+    pub(super) fn solver(&self, document: &Document) -> Result<Solver, InputError> {
         if self.told.is_some() {
             let message = "found `told` in an optimiser, expected it in a problem only";
             return Err(document.error_at(self.command.span(), message, None));
         }
-        let command = self.command(document)?;
-        let (name, identity) = (self.name(&command), self.identity(&command));
-        let solver = Solver::new(command.clone(), self.told_settings())
-            .in_formulation(self.formulation.clone())
-            .with_patience(self.timeout.patience());
-        let origin = Origin::External { table: Box::new(self), command };
-        Ok(Entrant::of(&name, identity, origin, solver))
+        let solver = Solver::new(self.command(document)?, self.told_settings())
+            .in_formulation(self.formulation.clone());
+        Ok(solver.with_patience(self.timeout.patience()))
     }
 
     /// The subject that it is.

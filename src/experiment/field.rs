@@ -87,7 +87,7 @@ impl EntrantTable {
             }
             (None, Some(external), None) => {
                 let place = external.span();
-                (external.into_inner().entrant(document)?, place)
+                (Entrant::external(external.into_inner(), document)?, place)
             }
             (None, None, Some(outside)) => {
                 let place = outside.span();

@@ -60,7 +60,7 @@ pub(super) fn expected_running_time(
         };
         let mut marks: Vec<Mark> = facet.others.iter().map(|c| faint(finite(c))).collect();
         marks.extend(facet.curves.iter().map(|c| curve_line(c, finite(c), looks)));
-        let x = Axis::logarithmic(&format!("target: {symbol} above the least"), targets, 0.0);
+        let x = Axis::logarithmic(&format!("target: {symbol} − least known"), targets, 0.0);
         let y = Axis::logarithmic("expected evaluations", times, MARGIN);
         Panel::new(x.reversed(), y, marks).titled(&facet.title)
     });

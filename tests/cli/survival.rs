@@ -284,7 +284,8 @@ fn damaged_files_are_named_and_done_again() {
         assert_eq!(results(&out), calm);
     }
     // Remains of killed processes go when they are a day old.
-    let (old, young) = (out.join("traces/.tmpold"), out.join("traces/.tmpyoung"));
+    let (old, young) =
+        (out.join("traces/.tmp-driftless-old"), out.join("traces/.tmp-driftless-young"));
     for path in [&old, &young] {
         fs::write(path, "half").unwrap();
     }
