@@ -23,13 +23,9 @@ pub struct Standing {
 impl Standing {
     /// What there is to say of runs that do not belong to the plan, if there are any.
     pub fn others(&self) -> Option<String> {
-        let (run, belong) =
-            if self.others == 1 { ("run", "belongs") } else { ("runs", "belong") };
+        let (run, belong) = if self.others == 1 { ("run", "belongs") } else { ("runs", "belong") };
         (self.others > 0).then(|| {
-            format!(
-                "{} stored {run} {belong} to another version of the experiment",
-                self.others
-            )
+            format!("{} stored {run} {belong} to another version of the experiment", self.others)
         })
     }
 
