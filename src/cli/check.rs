@@ -82,6 +82,7 @@ impl Check {
 fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError> {
     use super::run::default_jobs;
     use super::warnings::{warn_of_budgets, warn_of_subjects};
+    use crate::exhibit::words::plural;
     use crate::experiment::{self, Experiment};
     use crate::registry::registry;
     use indicatif::HumanDuration;
@@ -98,8 +99,11 @@ fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError>
     say!("{}", plan.experiment.to_toml().map_err(CliError::Resolved)?.trim_end());
     let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
     say!(
-        "\n# {} runs: {instances} instances × {optimisers} optimisers × {seeds} seeds",
-        plan.runs.len()
+        "\n# {}: {} × {} × {seeds} {}",
+        plural(plan.runs.len(), "run"),
+        plural(instances, "instance"),
+        plural(optimisers, "optimiser"),
+        if seeds == "1" { "seed" } else { "seeds" }
     );
     if estimate {
         let jobs = default_jobs();

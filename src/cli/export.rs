@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::CliError;
 use super::results::{ResultsFolder, no_results};
 use super::warnings::warn_of_damage;
+use crate::exhibit::words::plural;
 use crate::experiment::{Plan, Run, load, standing};
 use crate::export::{Suite, SuiteFormat, write_suite};
 use crate::reorientation::{MotionFormat, TaskSubject, write_motions};
@@ -92,8 +93,17 @@ impl Export {
             let message = "the problems of this experiment have no motions".to_owned();
             return Err(CliError::Usage { message, help: Some("expected ioh or coco".to_owned()) });
         }
-        let count = write_motions(&self.out, format, plan, runs)?;
-        say!("{}: the best motions of {count} instances", self.out.display());
+        let written = write_motions(&self.out, format, plan, runs)?;
+        let instances = plural(written.motions, "instance");
+        say!("{}: the best motions of {instances}", self.out.display());
+        if written.missed > 0 {
+            let verb = if written.missed == 1 { "ends" } else { "end" };
+            note!(
+                "warning: {} {verb} more than {}° from the goal; the table `best` of the report has all residuals",
+                plural(written.missed, "motion"),
+                written.tolerance_deg
+            );
+        }
         Ok(())
     }
 }

@@ -87,8 +87,11 @@ impl OtherFamily {
 impl fmt::Display for OtherFamily {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { terms, t_f, residual_deg, status } = self;
-        write!(f, "sine polynomials with {terms} terms: {t_f:.6} s")?;
-        if *status == Reach::Reached { Ok(()) } else { write!(f, ", {residual_deg:.3}° off") }
+        write!(f, "sine polynomials with {terms} terms: ")?;
+        match status {
+            Reach::Reached => write!(f, "{t_f:.6} s"),
+            _ => write!(f, "none found that reaches the goal ({residual_deg:.3}° off)"),
+        }
     }
 }
 
@@ -158,6 +161,8 @@ impl<F: SearchedFamily> Found<F> {
         let told = Told { task, assessment: &self.assessment, excursions: &excursions };
         let _ = writeln!(text, "{told}");
         let _ = writeln!(text, "  verdict        {}", self.verdict());
+        let _ =
+            writeln!(text, "  not checked    collisions, torques, flexible parts; see the README");
         if let Some(known) = known {
             let _ =
                 writeln!(text, "  this J         {}", known.compared_with(self.assessment.cost));
@@ -215,8 +220,10 @@ impl<F: SearchedFamily> Found<F> {
                  not turn the base faster"
             ),
             Reach::NotFound if self.interrupted => return,
+            // Of a search that was cut off it is not known where it would have ended.
             Reach::NotFound
                 if task.family().spec().name() == FamilyName::SinePolynomial
+                    && self.spent.evaluations < budget
                     && task.is_held_by_time(&self.coefficients) =>
             {
                 format!(

@@ -40,6 +40,17 @@ impl MotionFiles {
         Ok(())
     }
 
+    /// Says which of the files that were asked for there are not, as there is no motion.
+    pub(super) fn tell_unwritten(&self) {
+        if let Some(path) = &self.motion {
+            note!("note: no motion is written to {}", path.display());
+        }
+        #[cfg(feature = "harness")]
+        if let Some(folder) = &self.figures {
+            note!("note: nothing is drawn into {}", folder.display());
+        }
+    }
+
     fn format(&self) -> Result<Option<(&Path, MotionFormat)>, CliError> {
         let Some(path) = &self.motion else { return Ok(None) };
         let usage = |message: String| CliError::Usage { message, help: None };
@@ -215,7 +226,7 @@ impl fmt::Display for Told<'_> {
         }
         write!(
             f,
-            "  on the way     the base turns by up to {:.3}° (at {:.4} s), at up to {:.3} °/s",
+            "  on the way     the base is up to {:.3}° from its start (at {:.4} s), turning at up to {:.3} °/s",
             excursions.base_turn.to_degrees(),
             excursions.base_turn_at,
             excursions.base_rate.to_degrees()

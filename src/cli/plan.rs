@@ -129,6 +129,7 @@ impl Plan {
 
     /// Says that there is nothing to plan.
     fn tell_already_there(&self, task: &Task, residual: f64) -> Result<(), CliError> {
+        self.files.tell_unwritten();
         let (residual_deg, tolerance_deg) = (residual.to_degrees(), task.goal_tolerance_deg());
         if self.json {
             let json = serde_json::json!({

@@ -8,6 +8,7 @@ use super::CliError;
 use super::results::{ResultsFolder, command};
 use super::warnings::warn_of_damage;
 use crate::analysis::render;
+use crate::exhibit::words::plural;
 use crate::experiment::{Damage, FailedRun, Folder, Standing, Tally, standing};
 
 /// Say which runs of an experiment are done, failed or missing
@@ -146,12 +147,13 @@ fn tell(results: &Folder, standing: &Standing, batches: usize) -> Result<(), Cli
     warn_of_damage(&results.store);
     say!("{}", render(&table)?);
     say!(
-        "{}: {} of {} runs are stored, {} failed, {} missing; {batches} files per table",
+        "{}: {} of {} runs are stored, {} failed, {} missing; {} per table",
         plan.name,
         all.stored,
         all.planned,
         all.failed,
-        all.missing()
+        all.missing(),
+        plural(batches, "file")
     );
     for failure in standing.failures.iter().take(MOST_SHOWN) {
         let run = &plan.runs[failure.run];

@@ -382,7 +382,10 @@ impl<'i> Axis<'i> {
             for value in &self.values {
                 let mut choice = choice.clone();
                 if let Some(key) = set(&mut choice, &self.path, value) {
-                    let message = format!("`{}` has a value beside its sweep", key.get_ref());
+                    let message = format!(
+                        "`{}` has a value beside its sweep, expected one of them",
+                        key.get_ref()
+                    );
                     return Err(document.error_at(key.span(), message, None));
                 }
                 crossed.push(choice);

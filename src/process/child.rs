@@ -113,17 +113,17 @@ impl Child {
         }
         self.stop();
         let status = self.process.wait().ok();
-        status.filter(|_| by_itself)
-    }
-
-    /// What it has said last to nobody, in one line; complete once it has ended.
-    pub(super) fn last_words(&self) -> String {
         let deadline = Instant::now() + LAST_WORDS;
         while self.errors.as_ref().is_some_and(|thread| !thread.is_finished())
             && Instant::now() < deadline
         {
             std::thread::sleep(Duration::from_millis(1));
         }
+        status.filter(|_| by_itself)
+    }
+
+    /// What it has said last to nobody, in one line; complete once it has ended.
+    pub(super) fn last_words(&self) -> String {
         let said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
         let text = String::from_utf8_lossy(said.0.as_slices().0).into_owned()
             + &String::from_utf8_lossy(said.0.as_slices().1);

@@ -18,22 +18,25 @@ const LOOK: Duration = Duration::from_millis(50);
 pub(super) struct Conversation {
     child: Child,
     name: String,
+    /// When it should not end.
+    too_early: &'static str,
     patience: Patience,
     /// How long it was waited for since it said `hello`.
     waited: Duration,
 }
 
 impl Conversation {
-    /// Starts a process and says the first line.
+    /// Starts a process and says the first line; `too_early` says when it should not end.
     pub(super) fn open(
         command: &Command,
         patience: Patience,
+        too_early: &'static str,
         opening: String,
     ) -> Result<Self, Failure> {
         let child = Child::start(command)?;
         child.say(opening);
         let name = command.to_string();
-        Ok(Self { child, name, patience, waited: Duration::ZERO })
+        Ok(Self { child, name, too_early, patience, waited: Duration::ZERO })
     }
 
     /// Says a line.
@@ -81,7 +84,10 @@ impl Conversation {
                 format!("took more than {} s of its own time", search.as_secs_f64())
             }),
             _ => self.line(silence, is_interrupted, || {
-                format!("said nothing for {} s", silence.as_secs_f64())
+                format!(
+                    "said nothing for {} s; does it flush its output after every line?",
+                    silence.as_secs_f64()
+                )
             }),
         };
         self.waited += began.elapsed();
@@ -120,17 +126,18 @@ impl Conversation {
         self.child.end();
     }
 
-    /// What it did wrong, with its last words. It is ended.
+    /// What it did wrong, with its last words. It is ended; what it says to that is no part of them.
     pub(super) fn failure(&mut self, what: &str) -> Failure {
+        let failure = self.told(what);
         self.child.end();
-        self.told(what)
+        failure
     }
 
     fn ended(&mut self) -> Failure {
         let status = self.child.end();
         let how = status
             .map_or_else(|| "closed its output".to_owned(), |status| format!("ended ({status})"));
-        self.told(&format!("{how} before it was done"))
+        self.told(&format!("{how} {}", self.too_early))
     }
 
     fn told(&self, what: &str) -> Failure {

@@ -120,7 +120,12 @@ impl Program {
         let opening = serde_json::json!({
             "driftless": VERSION, "role": "problem", "settings": self.settings,
         });
-        let mut process = Conversation::open(&self.command, self.patience, answer::line(&opening))?;
+        let mut process = Conversation::open(
+            &self.command,
+            self.patience,
+            "while costs were asked of it",
+            answer::line(&opening),
+        )?;
         let hello: Hello = process.greet(is_interrupted).map_err(failed)?;
         let (count, others) = (hello.lower.0.len(), hello.upper.0.len());
         let dimension = hello.dimension.unwrap_or(count);

@@ -67,6 +67,8 @@ pub(super) fn parsed<T: DeserializeOwned>(line: &str) -> Result<T, Failure> {
 fn unreadable(line: &str, error: &serde_json::Error) -> Failure {
     let hint = if ["NaN", "Infinity"].iter().any(|word| line.contains(word)) {
         "; what is not finite is written \"nan\", \"inf\" or \"-inf\""
+    } else if line.trim_start().starts_with("{'") {
+        "; JSON has double quotes"
     } else {
         ""
     };

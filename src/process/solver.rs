@@ -55,7 +55,8 @@ impl Optimiser for Solver {
         let size = (rng.seed(), oracle.remaining());
         let opening = answer::line(&Opening::new(oracle.bounds(), has, size, &self.settings));
         self.command.check_files()?;
-        let mut process = Conversation::open(&self.command, self.patience, opening)?;
+        let mut process =
+            Conversation::open(&self.command, self.patience, "before it was done", opening)?;
         let mut search = Search { process: &mut process, outside: 0 };
         let outcome = search.run(oracle);
         oracle.stop_clock();

@@ -157,7 +157,7 @@ fn shards_share_a_folder_that_is_compacted_and_read_meanwhile() {
         assert!(shard.wait().unwrap().success(), "{log}");
     }
     let output = folder.run(&["compact", "shared"]);
-    assert_eq!(stdout(&output).matches("1 files per table").count(), 1, "{}", stdout(&output));
+    assert_eq!(stdout(&output).matches("1 file per table").count(), 1, "{}", stdout(&output));
     assert_eq!(results(&shared), calm);
 }
 

@@ -30,8 +30,11 @@ pub(super) fn charts(best: &[BestMotion<'_>]) -> (Vec<Chart>, Option<Finding>) {
             left_out.extend(varies(&points).then_some(name));
             continue;
         };
-        let is_joined = matches!(swept, Swept::WeightBase | Swept::Terms | Swept::Pieces);
-        let joined = if is_joined { "" } else { ", and joined to no other" };
+        let joined = match swept {
+            Swept::Terms | Swept::Pieces => "",
+            Swept::WeightBase => ", and joined to none that reaches it",
+            _ => ", and joined to no other",
+        };
         let caption = format!(
             "{caption} Motions that end more than {AT_GOAL_DEG}° off the goal are hollow{joined}. Of several poses \
              each has a thin line."

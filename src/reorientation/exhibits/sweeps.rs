@@ -325,7 +325,9 @@ impl Drawing<'_> {
         let pale = mix(full.colour, PAPER, 0.4);
         let stroke = if own.is_posed() { Stroke::plain(pale, 0.12) } else { full };
         let joins = |a: &Point, b: &Point| match (ordinate, self.swept) {
-            (Ordinate::Cost, _) | (_, Swept::WeightBase) => true,
+            (Ordinate::Cost, _) => true,
+            // Where the weight is too small the motions are others than where it is large enough.
+            (_, Swept::WeightBase) => a.misses() == b.misses(),
             (Ordinate::Residual, _) => false,
             (Ordinate::Duration, _) => !a.misses() && !b.misses(),
         };

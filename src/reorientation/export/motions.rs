@@ -7,25 +7,39 @@ use super::{ExportError, INTERVALS, MotionFormat, write_motion};
 use crate::experiment::{Plan, Run};
 use crate::output::{file_name, unlike, write_folder};
 use crate::reorientation::exhibits::best::best_motions;
+use crate::reorientation::exhibits::words::AT_GOAL_DEG;
+
+/// What was written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct WrittenMotions {
+    /// How many motions.
+    pub motions: usize,
+    /// How many of them end further than that from their goals.
+    pub missed: usize,
+    /// How far that is \[°\].
+    pub tolerance_deg: f64,
+}
 
 /// Writes the best motion of every instance that is a task into a folder of their own, whole or not at
-/// all; the number of motions. A file has the instance's label as its name, or `best` where there is none.
+/// all. A file has the instance's label as its name, or `best` where there is none.
 pub fn write_motions(
     folder: &Path,
     format: MotionFormat,
     plan: &Plan,
     runs: &[Run],
-) -> Result<usize, ExportError> {
-    let mut taken = HashSet::new();
+) -> Result<WrittenMotions, ExportError> {
+    let (mut taken, mut missed) = (HashSet::new(), 0);
     write_folder(folder, |folder| {
         for best in best_motions(&plan.results(runs)) {
             let label = &best.instance.label;
             let label = if label.is_empty() { "best" } else { label };
             let name = unlike(&file_name(label), &mut taken);
+            missed += usize::from(best.residual_deg > AT_GOAL_DEG);
             let path = folder.join(name).with_extension(format.extension());
             write_motion(&path, format, &best.sample(INTERVALS))?;
         }
         Ok::<(), ExportError>(())
     })?;
-    Ok(taken.len())
+    Ok(WrittenMotions { motions: taken.len(), missed, tolerance_deg: AT_GOAL_DEG })
 }

@@ -1,4 +1,4 @@
-% A solver in Octave: octave-cli --quiet random_search.m
+% A solver in Octave: octave-cli --quiet gaussian_search.m
 opening = jsondecode(fgetl(stdin));
 lower = opening.problem.lower(:)';
 upper = opening.problem.upper(:)';
@@ -19,7 +19,7 @@ function line = numbers(line)
   line = strrep(strrep(line, '"inf"', "1e999"), '"nan"', "null");
 end
 
-say('{"hello":{"name":"random-search","version":"1"}}');
+say('{"hello":{"name":"gaussian-search","version":"1"}}');
 while true
   points = best + radius * (upper - lower) .* randn(count, numel(lower));
   points = min(max(points, lower), upper);

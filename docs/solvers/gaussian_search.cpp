@@ -1,4 +1,4 @@
-// A solver in C++, without any library: g++ -O2 -o random_search random_search.cpp
+// A solver in C++, without any library: g++ -O2 -o gaussian_search gaussian_search.cpp
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -36,7 +36,7 @@ int main() {
     Numbers best(n);
     for (size_t i = 0; i < n; i++) best[i] = 0.5 * (lower[i] + upper[i]);
     double least = std::numeric_limits<double>::infinity(), radius = 0.5;
-    std::cout << "{\"hello\":{\"name\":\"random-search\",\"version\":\"1\"}}" << std::endl;
+    std::cout << "{\"hello\":{\"name\":\"gaussian-search\",\"version\":\"1\"}}" << std::endl;
     for (;;) {
         std::vector<Numbers> points(size, best);
         std::string question = "{\"id\":1,\"x\":[";

@@ -1,4 +1,4 @@
-"""A solver in Python, without any package: the better half of each batch moves halfway to the best point so far."""
+"""A solver in Python, without any package: it samples around the best point; the spread shrinks, and doubles where that gains."""
 
 import json
 import random
@@ -27,7 +27,7 @@ def main():
     lower, upper = problem["lower"], problem["upper"]
     size = settings.get("size", 32)
     rng = random.Random(opening["seed"])
-    say({"hello": {"name": "random-search", "version": "1"}})
+    say({"hello": {"name": "gaussian-search", "version": "1"}})
     points = [[rng.uniform(a, b) for a, b in zip(lower, upper)] for _ in range(size)]
     best, least = None, float("inf")
     radius = 0.5
