@@ -6,7 +6,7 @@ use crate::exhibit::words::significant;
 pub(super) const NONE_DEG: f64 = 1e-3;
 
 /// Residuals above miss the goal \[°\].
-pub(super) const AT_GOAL_DEG: f64 = 0.01;
+pub(in crate::reorientation) const AT_GOAL_DEG: f64 = 0.01;
 
 /// How far the base ends off the goal.
 pub(super) fn off_the_goal(residual_deg: f64) -> String {
