@@ -18,7 +18,7 @@ mod sweep_tests;
 mod sweeps;
 #[cfg(test)]
 mod tests;
-pub(in crate::reorientation) mod words;
+pub(super) mod words;
 
 use motion_charts::MOTION_NAMES;
 #[cfg(feature = "cli")]
