@@ -75,6 +75,16 @@ const LESS_TIME: f64 = 100.0;
 /// Starts among the paper's family, to compare.
 const OTHER_STARTS: usize = 12;
 
+/// Says what is doubtful about a task.
+fn warn_of_task(task: &Task) {
+    warn_of(&task.robot);
+    if task.base_weight >= 1.0 {
+        note!(
+            "warning: `weights.base` is 1, so time weighs nothing and the motion is as slow as it happens to be"
+        );
+    }
+}
+
 impl Plan {
     pub(super) fn execute(self) -> Result<(), CliError> {
         start_worker_threads()?;
@@ -92,7 +102,7 @@ impl Plan {
         }
         match problem {
             TaskProblem::SinePolynomial(problem, boxes) => {
-                warn_of(&problem.task().robot);
+                warn_of_task(problem.task());
                 // Default settings name no formulation.
                 let formulation =
                     Formulation::named(settings.formulation()).unwrap_or(Formulation::TimeFree);
@@ -109,7 +119,7 @@ impl Plan {
                 self.finish(&found, None, file.task)
             }
             TaskProblem::Spline(problem, boxes) => {
-                warn_of(&problem.task().robot);
+                warn_of_task(problem.task());
                 let table = file.trajectory.with_family(FamilyName::SinePolynomial);
                 let sine = (!is_named).then(|| table.build(problem.task().clone(), &document));
                 let sine = sine.transpose()?;

@@ -253,11 +253,19 @@ fn a_weight_that_is_too_small_is_told() {
     let folder = Folder::new()
         .with("heavy.toml", robot)
         .with("task.toml", task)
-        .with("weighed.toml", format!("{task}weights.base = 0.9999\n"));
+        .with("weighed.toml", format!("{task}weights.base = 0.9999\n"))
+        .with("untimed.toml", "[task]\nweights.base = 1\n");
     let output = folder.run(&["plan", "task.toml", "--family", "sine-polynomial"]);
     assert!(stdout(&output).contains("not stated     weights.base"), "{}", stdout(&output));
     assert!(stderr(&output).contains("Raise `weights.base` above 0.9"), "{}", stderr(&output));
     assert!(!stderr(&output).contains("more terms"), "{}", stderr(&output));
+    // Of a search that was cut off it is not known whether its end would have been nearer.
+    let cut_off = ["plan", "task.toml", "--optimiser", "random", "--budget", "200"];
+    let cut_off = stderr(&folder.run(&cut_off));
+    assert!(cut_off.contains("a larger `--budget`") && !cut_off.contains("Raise"), "{cut_off}");
+    let untimed = ["plan", "untimed.toml", "--optimiser", "random", "--budget", "200"];
+    let untimed = stderr(&folder.run(&untimed));
+    assert!(untimed.contains("time weighs nothing"), "{untimed}");
     let plan = json(&folder, &["plan", "weighed.toml", "--family", "sine-polynomial", "--json"]);
     assert_eq!((&plan["reached"], &plan["inherited"]), (&true.into(), &serde_json::json!([])));
 }
