@@ -12,9 +12,21 @@ const SLURM: [&str; 4] = [
     "SLURM_ARRAY_TASK_COUNT",
 ];
 
-/// Where schedulers put a task's number, the innermost first: the workers of `HyperQueue` are jobs of
-/// another scheduler.
-const NUMBERS: [&str; 3] = ["HQ_TASK_ID", "JOB_COMPLETION_INDEX", SLURM[0]];
+/// Where schedulers put a task's number and what they call the first, the innermost scheduler first: the workers of `HyperQueue` and
+/// the commands of GNU parallel are jobs of another one.
+const NUMBERS: [(&str, usize); 8] = [
+    ("HQ_TASK_ID", 0),
+    ("PARALLEL_SEQ", 1),
+    ("JOB_COMPLETION_INDEX", 0),
+    ("FLUX_JOB_CC", 0),
+    (SLURM[0], 0),
+    ("PBS_ARRAY_INDEX", 0),
+    ("SGE_TASK_ID", 1),
+    ("LSB_JOBINDEX", 1),
+];
+
+/// What Grid Engine and LSF set where a job is no task of an array.
+const NO_TASK: [(&str, &str); 2] = [("SGE_TASK_ID", "undefined"), ("LSB_JOBINDEX", "0")];
 
 /// A disjoint part of an experiment, `index` of `count`, counted from zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,26 +98,30 @@ impl ShardChoice {
             Self::OfCount(count) => Some(count),
             Self::Scheduled => None,
         };
-        let name = NUMBERS.into_iter().find(|name| variable(name).is_some());
-        let name = name.ok_or(ShardError::NoScheduler)?;
-        let (index, count) = match given {
-            Some(count) => (whole(name, &variable)?, count),
+        let tells = |(name, _): &(&str, usize)| {
+            variable(name).is_some_and(|value| !NO_TASK.contains(&(*name, &*value)))
+        };
+        let (name, first) = NUMBERS.into_iter().find(tells).ok_or(ShardError::NoScheduler)?;
+        let shard = match given {
+            Some(count) => {
+                let number = whole(name, &variable)?;
+                let shard = number.checked_sub(first).and_then(|index| Shard::new(index, count));
+                shard.ok_or(ShardError::OutOfRange { name, number, first, count })?
+            }
             None if name == SLURM[0] => slurm(&variable)?,
             None => return Err(ShardError::NoCount(name)),
         };
-        let shard =
-            Shard::new(index, count).ok_or(ShardError::OutOfRange { name, index, count })?;
         Ok((shard, Some(name)))
     }
 }
 
-/// Index and count of a task of a Slurm array.
-fn slurm(variable: &impl Fn(&str) -> Option<String>) -> Result<(usize, usize), ShardError> {
+/// The shard of a task of a Slurm array.
+fn slurm(variable: &impl Fn(&str) -> Option<String>) -> Result<Shard, ShardError> {
     let [id, min, step, count] = SLURM.map(|name| whole(name, variable));
     let (id, min, step, count) = (id?, min?, step?, count?);
     let index = id.checked_sub(min).filter(|from_min| step > 0 && from_min % step == 0);
-    let index = index.map(|from_min| from_min / step).filter(|index| *index < count);
-    Ok((index.ok_or(ShardError::Gap { id, min, step, count })?, count))
+    let shard = index.and_then(|from_min| Shard::new(from_min / step, count));
+    shard.ok_or(ShardError::Gap { id, min, step, count })
 }
 
 fn whole(
@@ -121,7 +137,7 @@ fn whole(
 #[non_exhaustive]
 pub enum ShardError {
     /// No variable is set.
-    #[error("no scheduler tells which shard this is: none of {} is set", NUMBERS.join(", "))]
+    #[error("no scheduler tells which shard this is: none of {} is set", NUMBERS.map(|(name, _)| name).join(", "))]
     NoScheduler,
     /// The scheduler does not tell how many tasks there are.
     #[error("{0} tells which shard this is, but not of how many")]
@@ -138,12 +154,14 @@ pub enum ShardError {
         value: String,
     },
     /// The task's number is not below the count given.
-    #[error("{name} is {index}, but shards of {count} are numbered from 0 to {}", .count - 1)]
+    #[error("{name} is {number}, but {count} tasks are numbered from {first} to {}", .first + .count - 1)]
     OutOfRange {
         /// The variable.
         name: &'static str,
         /// Its value.
-        index: usize,
+        number: usize,
+        /// The first task's.
+        first: usize,
         /// How many shards there are.
         count: usize,
     },
@@ -170,7 +188,10 @@ impl ShardError {
             }
             Self::NoCount(_) => "write --shard /N, such as --shard /4 in each of four tasks",
             Self::NotSet(_) => "write --shard /N, such as --shard /4 in an array numbered 0-3",
-            Self::OutOfRange { .. } => "number the tasks from 0, such as 0-3 with --shard /4",
+            Self::OutOfRange { first: 0, .. } => {
+                "number the tasks from 0, such as 0-3 with --shard /4"
+            }
+            Self::OutOfRange { .. } => "number the tasks from 1, such as 1-4 with --shard /4",
             Self::Gap { .. } => {
                 "where an array has gaps write --shard /N, such as --shard /4 in tasks of an array \
                  numbered 0-3"
@@ -260,6 +281,28 @@ mod tests {
         assert_eq!(resolve("", &kubernetes), Err(ShardError::NoCount("JOB_COMPLETION_INDEX")));
     }
 
+    /// Grid Engine, LSF and GNU parallel count from 1, PBS as the user says, Flux from 0; what the first two set
+    /// outside of arrays is no task.
+    #[test]
+    fn other_schedulers_tell_the_index() {
+        for (name, value, shard) in [
+            ("PARALLEL_SEQ", "1", "0/4"),
+            ("SGE_TASK_ID", "4", "3/4"),
+            ("LSB_JOBINDEX", "2", "1/4"),
+            ("PBS_ARRAY_INDEX", "2", "2/4"),
+            ("FLUX_JOB_CC", "0", "0/4"),
+        ] {
+            assert_eq!(resolve("/4", &[(name, value)]), Ok(format!("{shard} {name}")));
+            assert_eq!(resolve("", &[(name, value)]), Err(ShardError::NoCount(name)));
+        }
+        let none = [("SGE_TASK_ID", "undefined"), ("LSB_JOBINDEX", "0")];
+        assert_eq!(resolve("/4", &none), Err(ShardError::NoScheduler));
+        let (name, number, first, count) = ("SGE_TASK_ID", 5, 1, 4);
+        let error = ShardError::OutOfRange { name, number, first, count };
+        assert_eq!(error.to_string(), "SGE_TASK_ID is 5, but 4 tasks are numbered from 1 to 4");
+        assert_eq!(resolve("/4", &[(name, "5")]), Err(error));
+    }
+
     #[test]
     fn what_is_not_told_is_an_error() {
         for value in ["", "/4"] {
@@ -267,7 +310,7 @@ mod tests {
         }
         let name = "HQ_TASK_ID";
         for (text, error) in [
-            ("4", ShardError::OutOfRange { name, index: 4, count: 4 }),
+            ("4", ShardError::OutOfRange { name, number: 4, first: 0, count: 4 }),
             ("-1", ShardError::NotANumber { name, value: "-1".to_owned() }),
             ("", ShardError::NotANumber { name, value: String::new() }),
         ] {

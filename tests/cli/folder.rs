@@ -33,7 +33,16 @@ impl Folder {
         let mut command = Command::new(env!("CARGO_BIN_EXE_driftless"));
         command.args(args).current_dir(self.path());
         command.env("LC_ALL", "C.UTF-8").env("NO_COLOR", "1").env_remove("RUST_BACKTRACE");
-        for variable in ["HQ_TASK_ID", "JOB_COMPLETION_INDEX", "SLURM_ARRAY_TASK_ID"] {
+        for variable in [
+            "HQ_TASK_ID",
+            "PARALLEL_SEQ",
+            "JOB_COMPLETION_INDEX",
+            "FLUX_JOB_CC",
+            "SLURM_ARRAY_TASK_ID",
+            "PBS_ARRAY_INDEX",
+            "SGE_TASK_ID",
+            "LSB_JOBINDEX",
+        ] {
             command.env_remove(variable);
         }
         command
