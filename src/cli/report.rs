@@ -73,17 +73,15 @@ fn beside(folders: &[Folder]) -> Result<Plan, CliError> {
         let message = "found one folder of results twice, expected each once".to_owned();
         return Err(CliError::Usage { message, help: None });
     }
-    match folders {
-        [one] => Ok(one.plan.clone()),
-        _ => {
-            let plans: Vec<(&str, &Plan)> =
-                names.iter().map(String::as_str).zip(folders.iter().map(|f| &f.plan)).collect();
-            Plan::beside(&plans).ok_or_else(|| CliError::Usage {
-                message: "found no folder of results".to_owned(),
-                help: None,
-            })
-        }
+    let plans: Vec<(&str, &Plan)> =
+        names.iter().map(String::as_str).zip(folders.iter().map(|folder| &folder.plan)).collect();
+    if let [(_, plan)] = plans[..] {
+        return Ok(plan.clone());
     }
+    Plan::beside(&plans).ok_or_else(|| CliError::Usage {
+        message: "found no folder of results".to_owned(),
+        help: None,
+    })
 }
 
 /// Columns of a line of text.
@@ -96,7 +94,9 @@ pub(super) fn report(
     target: &Target<'_>,
 ) -> Result<Option<String>, CliError> {
     let report = write_all(plan, stores, target)?;
-    stores.iter().for_each(|store| warn_of_damage(store));
+    for store in stores {
+        warn_of_damage(store);
+    }
     if report.stored < plan.runs.len() {
         say!("{} of {} runs are stored so far", report.stored, plan.runs.len());
     }

@@ -50,6 +50,7 @@ pub(super) struct ExternalTable {
 /// How long the program is waited for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, expecting = "a table")]
+#[expect(clippy::struct_field_names, reason = "keys of a file with their unit")]
 struct TimeoutTable {
     /// Until it is ready \[s\].
     #[serde(deserialize_with = "seconds")]
@@ -73,7 +74,6 @@ impl Default for TimeoutTable {
     }
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
 fn timeouts_are_default(timeout: &TimeoutTable) -> bool {
     *timeout == TimeoutTable::default()
 }

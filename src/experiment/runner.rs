@@ -51,7 +51,9 @@ pub fn run(
     progress: &dyn Progress,
 ) -> Result<(), RunError> {
     let damaged = store.set_aside(&|| progress.waiting())?;
-    damaged.iter().for_each(|damage| progress.set_aside(damage));
+    for damage in &damaged {
+        progress.set_aside(damage);
+    }
     let stored = store.keys()?;
     let missing = runs.iter().copied().filter(|run| !stored.contains(&run.key));
     let (missing, foreign): (Vec<_>, Vec<_>) =

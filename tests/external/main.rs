@@ -1,5 +1,5 @@
 //! Optimisers that are programs: what they may do, and what becomes of those that misbehave.
-#![cfg(unix)]
+#![cfg(all(unix, feature = "harness"))]
 
 use std::collections::BTreeMap;
 use std::fs;
