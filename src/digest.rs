@@ -6,7 +6,17 @@ use sha2::{Digest, Sha256};
 
 /// The first 16 hexadecimal digits of a text's SHA-256.
 pub(crate) fn digest(text: &str) -> String {
-    Sha256::digest(text).iter().take(8).fold(String::new(), |mut hex, byte| {
+    hexadecimal(&Sha256::digest(text)[..8])
+}
+
+/// The SHA-256 of a file's content, all 64 hexadecimal digits.
+#[cfg(feature = "harness")]
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut hex, byte| {
         let _ = write!(hex, "{byte:02x}");
         hex
     })

@@ -1,12 +1,11 @@
 //! What is started, and what determines what it does.
 
 use std::collections::BTreeMap;
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use sha2::{Digest as _, Sha256};
-
+use crate::digest::sha256;
 use crate::search::Failure;
 
 /// A program with its arguments, and the files that determine what it does.
@@ -69,7 +68,7 @@ impl Command {
         let digest = |name: String| {
             let path = folder.join(&name);
             match std::fs::read(&path) {
-                Ok(bytes) => Ok((name, hexadecimal(&Sha256::digest(bytes)))),
+                Ok(bytes) => Ok((name, sha256(&bytes))),
                 Err(source) => Err(CommandError::File { path, source }),
             }
         };
@@ -106,7 +105,7 @@ impl Command {
     pub(super) fn check_files(&self) -> Result<(), Failure> {
         for (name, digest) in &self.files {
             let path = self.folder.join(name);
-            let found = std::fs::read(&path).map(|bytes| hexadecimal(&Sha256::digest(bytes)));
+            let found = std::fs::read(&path).map(|bytes| sha256(&bytes));
             if found.is_err() {
                 return Err(format!("{} is gone", path.display()).into());
             }
@@ -155,11 +154,4 @@ fn check(words: &[String]) -> Result<(), CommandError> {
         return Err(CommandError::Empty);
     }
     Ok(())
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }

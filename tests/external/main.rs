@@ -2,6 +2,7 @@
 #![cfg(all(unix, feature = "harness"))]
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -94,7 +95,8 @@ fn zoo(head: &str, species: &[&str]) -> tempfile::TempDir {
          functions = {{ name = ['sphere'], dimension = [2] }}\n"
     );
     for how in species {
-        experiment += &format!(
+        let _ = write!(
+            experiment,
             "[[optimiser]]\nlabel = '{how}'\nexternal = {{ command = ['python3', 'zoo.py', '{how}'], \
              timeout = {{ start_s = 1.5, silence_s = 1, search_s = 1.4 }} }}\n"
         );
@@ -191,13 +193,14 @@ fn problems(kinds: &[&str], optimisers: &[&str]) -> tempfile::TempDir {
     fs::write(folder.path().join("problems.py"), include_str!("problems.py")).unwrap();
     let mut experiment = "name = 'problems'\nseeds = 1\nbudget = { evaluations = 40 }\n".to_owned();
     for how in kinds {
-        experiment += &format!(
+        let _ = write!(
+            experiment,
             "[[problem]]\nlabel = '{how}'\nexternal = {{ command = ['python3', 'problems.py', '{how}'], \
              timeout = {{ start_s = 1.5, silence_s = 0.05 }} }}\n"
         );
     }
     for optimiser in optimisers {
-        experiment += &format!("[[optimiser]]\n{optimiser} = {{}}\n");
+        let _ = write!(experiment, "[[optimiser]]\n{optimiser} = {{}}\n");
     }
     fs::write(folder.path().join("problems.toml"), experiment).unwrap();
     folder
