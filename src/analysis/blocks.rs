@@ -109,11 +109,6 @@ impl Blocks {
         order
     }
 
-    /// The median cost of an optimiser over the blocks.
-    pub(super) fn median(&self, optimiser: usize) -> f64 {
-        median(self.costs.iter().map(|row| row[optimiser]).collect())
-    }
-
     /// Whether two optimisers differ significantly.
     pub(super) fn differ(&self, a: usize, b: usize) -> bool {
         self.pair(a, b).is_some_and(|pair| pair.p_holm <= ALPHA)

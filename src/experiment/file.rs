@@ -138,8 +138,15 @@ impl Experiment {
         problems.map(ExternalProblem::program).chain(solvers)
     }
 
-    /// Starts the programs that are problems and asks what problems they are, where that is not known.
+    /// Whether there are the programs that it starts; starts those that are problems and asks what problems they are, where that is
+    /// not known.
     pub fn ask_programs(&self) -> Result<(), InputError> {
+        for entry in &self.field {
+            if let Some((command, _)) = entry.entrant.program() {
+                let error = |failure| self.document.error_at(entry.place.clone(), failure, None);
+                command.check_program().map_err(error)?;
+            }
+        }
         for problem in self.instances.iter().filter_map(ExternalProblem::of) {
             let error = |failure| self.document.error_at(problem.place(), failure, None);
             problem.ask().map_err(error)?;

@@ -67,7 +67,11 @@ impl Command {
         };
         let digest = |name: String| {
             let path = folder.join(&name);
-            match std::fs::read(&path) {
+            let is_file = |found: std::fs::Metadata| match found.is_file() {
+                true => Ok(()),
+                false => Err(std::io::Error::other("it is not a file")),
+            };
+            match std::fs::metadata(&path).and_then(is_file).and_then(|()| std::fs::read(&path)) {
                 Ok(bytes) => Ok((name, sha256(&bytes))),
                 Err(source) => Err(CommandError::File { path, source }),
             }
@@ -99,6 +103,21 @@ impl Command {
     /// The SHA-256 of each file, by its name.
     pub fn files(&self) -> &BTreeMap<String, String> {
         &self.files
+    }
+
+    /// Whether there is such a program: in the folder, where its name has a separator, else in the search path.
+    pub fn check_program(&self) -> Result<(), Failure> {
+        let program = Path::new(&self.words[0]);
+        if program.components().count() > 1 {
+            return found_program(&self.folder.join(program));
+        }
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let mut folders = std::env::split_paths(&path);
+        // Elsewhere names have endings that the system adds.
+        if cfg!(not(unix)) || folders.any(|folder| found_program(&folder.join(program)).is_ok()) {
+            return Ok(());
+        }
+        Err(format!("found no program `{}` in the search path", self.words[0]).into())
     }
 
     /// Whether the files are what they were when the command was made.
@@ -138,6 +157,32 @@ impl fmt::Display for Command {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.words.join(" "))
     }
+}
+
+/// Whether a path is that of a program.
+fn found_program(path: &Path) -> Result<(), Failure> {
+    let shown = path.display();
+    match std::fs::metadata(path) {
+        Err(error) => Err(format!("cannot start {shown}: {error}").into()),
+        Ok(found) if !found.is_file() => {
+            Err(format!("cannot start {shown}: it is not a file").into())
+        }
+        Ok(found) if !is_executable(&found) => {
+            Err(format!("cannot start {shown}: it is not executable").into())
+        }
+        Ok(_) => Ok(()),
+    }
+}
+
+#[cfg(unix)]
+fn is_executable(found: &std::fs::Metadata) -> bool {
+    use std::os::unix::fs::PermissionsExt as _;
+    found.permissions().mode() & 0o111 != 0
+}
+
+#[cfg(not(unix))]
+fn is_executable(_: &std::fs::Metadata) -> bool {
+    true
 }
 
 /// The arguments that are files, such as a script for an interpreter; without any the program, if it is a file.

@@ -21,6 +21,8 @@ pub(super) struct Conversation {
     /// When it should not end.
     too_early: &'static str,
     patience: Patience,
+    /// How many questions it was asked.
+    questions: u64,
     /// How long it was waited for since it said `hello`.
     waited: Duration,
 }
@@ -36,7 +38,13 @@ impl Conversation {
         let child = Child::start(command)?;
         child.say(opening);
         let name = command.to_string();
-        Ok(Self { child, name, too_early, patience, waited: Duration::ZERO })
+        Ok(Self { child, name, too_early, patience, questions: 0, waited: Duration::ZERO })
+    }
+
+    /// The number of the next question, unlike all before.
+    pub(super) fn next_id(&mut self) -> u64 {
+        self.questions += 1;
+        self.questions - 1
     }
 
     /// Says a line.

@@ -13,6 +13,9 @@ use super::numbers::Numbers;
 use super::request::{parsed, shortened};
 use crate::search::{Bounds, Evaluation, Failure, Points, Problem, Stop, Watch};
 
+/// By how much a cost may be below the least one, as a share of it or of one.
+const ROUNDING: f64 = 1e-9;
+
 /// Points of a batch that are asked for at once.
 const AT_ONCE: usize = 256;
 
@@ -99,6 +102,7 @@ impl Program {
         self.give_back(process);
         let middle: Vec<f64> =
             told.lower.iter().zip(&told.upper).map(|(a, b)| a + 0.5 * (b - a)).collect();
+        // A cost below the least one fails here, too.
         told.start_cost = self.problem(&told)?.evaluate(&middle)?.cost;
         Ok(told)
     }
@@ -173,7 +177,6 @@ struct Talk {
     process: Option<Conversation>,
     /// Why there is none.
     failure: Option<Failure>,
-    questions: u64,
 }
 
 impl Served {
@@ -210,14 +213,14 @@ impl Served {
     /// Asks for costs; a process that fails is not asked again.
     fn ask(&self, points: &[&[f64]]) -> Result<Vec<Evaluation>, Failure> {
         let mut talk = self.talk.lock().unwrap_or_else(PoisonError::into_inner);
-        let id = talk.questions;
-        talk.questions += 1;
         let process = self.process(&mut talk)?;
+        let id = process.next_id();
         process.say(answer::line(&Question { id, x: points.to_vec() }));
         let times = u32::try_from(points.len()).unwrap_or(u32::MAX);
         let found =
             process.hear(times, &|| self.is_interrupted()).map_err(failed).and_then(|line| {
-                evaluations(&line, id, points.len()).map_err(|wrong| process.failure(&wrong))
+                evaluations(&line, id, points.len(), self.least_cost)
+                    .map_err(|wrong| process.failure(&wrong))
             });
         if let Err(failure) = &found {
             talk.process = None;
@@ -227,11 +230,24 @@ impl Served {
     }
 }
 
+fn plural(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
 /// The costs of a reply to a question about so many points, or what is wrong with it.
-fn evaluations(line: &str, id: u64, count: usize) -> Result<Vec<Evaluation>, String> {
+fn evaluations(
+    line: &str,
+    id: u64,
+    count: usize,
+    least_cost: Option<f64>,
+) -> Result<Vec<Evaluation>, String> {
     let reply: Reply = parsed(line).map_err(|failure| failure.reason().to_owned())?;
     if let Some(error) = reply.error {
-        return Err(format!("failed: {error}"));
+        let error = error.split_whitespace().collect::<Vec<_>>().join(" ");
+        return Err(format!(
+            "failed: {}",
+            if error.is_empty() { "no reason given" } else { &error }
+        ));
     }
     if reply.id.is_some_and(|found| found != id) {
         return Err(format!("sent `{}`, expected an answer to {id}", shortened(line)));
@@ -239,10 +255,26 @@ fn evaluations(line: &str, id: u64, count: usize) -> Result<Vec<Evaluation>, Str
     let Some(Numbers(costs)) = reply.cost else {
         return Err(format!("sent `{}`, expected a `cost`", shortened(line)));
     };
-    let violations = reply.violation.map_or_else(|| vec![0.0; costs.len()], |found| found.0);
-    if costs.len() != count || violations.len() != count {
-        let (found, others) = (costs.len(), violations.len());
-        return Err(format!("sent {found} costs and {others} violations for {count} points"));
+    if costs.len() != count {
+        return Err(format!("sent {} for {}", plural(costs.len(), "cost"), plural(count, "point")));
+    }
+    let violations = reply.violation.map_or_else(|| vec![0.0; count], |found| found.0);
+    if violations.len() != count {
+        let found = plural(violations.len(), "violation");
+        return Err(format!("sent {found} for {}", plural(count, "point")));
+    }
+    if let Some(wrong) =
+        violations.iter().find(|violation| !(0.0..f64::INFINITY).contains(*violation))
+    {
+        return Err(format!(
+            "sent a violation of {wrong}, expected a finite number, zero or above"
+        ));
+    }
+    let least = least_cost.unwrap_or(f64::NEG_INFINITY);
+    if let Some(cost) = costs.iter().find(|cost| **cost < least - ROUNDING * least.abs().max(1.0)) {
+        return Err(format!(
+            "sent a cost of {cost:e}, below the least cost {least:e} that it told of"
+        ));
     }
     let pairs = costs.into_iter().zip(violations);
     Ok(pairs.map(|(cost, violation)| Evaluation::new(cost, violation)).collect())

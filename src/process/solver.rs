@@ -65,6 +65,11 @@ impl Optimiser for Solver {
             let points = if outside == 1 { "point" } else { "points" };
             oracle.remark(format!("{outside} {points} outside the box cost infinitely much"));
         }
+        // A run of a program that was edited meanwhile is none of the one that the experiment names.
+        let outcome = match outcome {
+            Err(Stop::Interrupted) => outcome,
+            _ => self.command.check_files().map_err(Stop::from).and(outcome),
+        };
         let reason = match &outcome {
             Ok(()) => None,
             Err(Stop::BudgetSpent) => Some("budget"),
@@ -132,11 +137,14 @@ impl Search<'_> {
         id: Option<&Value>,
         x: &Coordinates,
     ) -> Result<(), Stop> {
+        if x.len() == 0 {
+            return Err(self.process.failure("asked for the costs of no points").into());
+        }
         let points = x.points(oracle.bounds().len());
         let points = points.map_err(|failure| self.process.failure(failure.reason()))?;
         let mut found = Vec::new();
         let outcome = self.evaluate(oracle, points, &mut found);
-        if !found.is_empty() || points_are_none(x) {
+        if !found.is_empty() {
             let answer = Answer::costs(id, &found, x.is_single, oracle.remaining());
             self.process.say(answer::line(&answer));
         }
@@ -194,10 +202,6 @@ impl Search<'_> {
         };
         Err(self.process.failure(&wrong).into())
     }
-}
-
-fn points_are_none(x: &Coordinates) -> bool {
-    x.len() == 0
 }
 
 /// Puts a point that is outside the box by rounding onto its walls; whether it is inside then.

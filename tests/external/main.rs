@@ -13,7 +13,7 @@ use polars::prelude::*;
 const ZOO: &str = include_str!("zoo.py");
 
 /// What every solver of the zoo has to be told, beside what comes of it: status, evaluations, and what its record says.
-const SPECIES: [(&str, &str, u64, &str); 26] = [
+const SPECIES: [(&str, &str, u64, &str); 27] = [
     ("behaves", "finished", 10, ""),
     ("overruns-by-one", "budget-spent", 40, ""),
     ("overruns-by-a-batch", "budget-spent", 40, ""),
@@ -44,6 +44,7 @@ const SPECIES: [(&str, &str, u64, &str); 26] = [
     ("never-listens", "budget-spent", 40, ""),
     ("asks-for-derivatives", "no-derivatives", 0, "the problem has no derivatives"),
     ("searches-too-long", "failed", 4, "took more than 1.4 s of its own time"),
+    ("asks-for-nothing", "failed", 0, "asked for the costs of no points"),
     ("ends-without-done", "failed", 5, "ended (exit status: 0) before it was done"),
 ];
 
@@ -175,14 +176,16 @@ fn wait_until(holds: impl Fn() -> bool) {
 }
 
 /// What misbehaves once it is asked more than five times, beside what the records say; nothing where runs end as they should.
-const PROBLEMS: [(&str, &str); 9] = [
+const PROBLEMS: [(&str, &str); 11] = [
     ("behaves", ""),
     ("prints", ""),
     ("answers-not-finite", ""),
     ("is-killed", "ended (signal: 9 (SIGKILL))"),
     ("says-why-it-fails", "failed: no convergence at this point"),
     ("hangs", "said nothing for"),
-    ("answers-too-few", "costs and"),
+    ("answers-too-few", " for "),
+    ("answers-below-the-least", "below the least cost 0e0 that it told of"),
+    ("is-violated-by-less-than-nothing", "sent a violation of -1, expected"),
     ("answers-another", "expected an answer to"),
     ("sends-no-json", "sent a line that cannot be read"),
 ];
@@ -270,6 +273,42 @@ fn an_edited_solver_is_another() {
     let mut evaluations = counts(&runs(&folder.path().join("out")), "evaluations");
     evaluations.sort_unstable();
     assert_eq!(evaluations, [10, 11]);
+}
+
+/// A run during which its solver is edited is none of the solver's that the experiment names.
+#[test]
+fn runs_of_solvers_that_change_meanwhile_fail() {
+    let folder = zoo("", &["edits-itself"]);
+    let output = driftless(folder.path(), &["run", "zoo.toml", "--out", "out"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let runs = runs(&folder.path().join("out"));
+    assert_eq!((&*texts(&runs, "status")[0], counts(&runs, "evaluations")[0]), ("failed", 5));
+    let message = &texts(&runs, "message")[0];
+    assert!(message.contains("zoo.py is not what it was"), "{message}");
+}
+
+/// A program that is not there is an error before anything is written, and no failed run.
+#[test]
+fn programs_that_are_not_there_are_refused() {
+    for (command, message) in [
+        ("['no-such-program']", "found no program `no-such-program` in the search path"),
+        ("['./no-such-program']", "No such file"),
+        ("['./folder']", "folder: it is not a file"),
+        ("['./zoo.py']", "zoo.py: it is not executable"),
+        ("['python3', 'zoo.py'], files = ['/dev/zero']", "/dev/zero: it is not a file"),
+    ] {
+        let folder = zoo("", &["behaves"]);
+        fs::create_dir(folder.path().join("folder")).unwrap();
+        let file = folder.path().join("zoo.toml");
+        let text = fs::read_to_string(&file).unwrap();
+        fs::write(&file, text.replace("['python3', 'zoo.py', 'behaves']", command)).unwrap();
+        let output = driftless(folder.path(), &["run", "zoo.toml", "--out", "out"]);
+        assert_eq!(output.status.code(), Some(2), "{command}: {}", said(&output));
+        let said = said(&output).replace(['│', '\n'], " ");
+        let error = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(error.contains(message), "{command}: {error}");
+        assert!(!folder.path().join("out").exists());
+    }
 }
 
 /// Files of results name programs that may come from anybody: nothing is started without a word from the user.

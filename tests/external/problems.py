@@ -43,6 +43,10 @@ for line in sys.stdin:
         answer = {"id": question["id"], "error": "no convergence at this point"}
     elif how == "hangs":
         time.sleep(1000)
+    elif how == "answers-below-the-least":
+        answer["cost"][0] = -1
+    elif how == "is-violated-by-less-than-nothing":
+        answer["violation"] = [-1] * len(costs)
     elif how == "answers-too-few":
         answer["cost"] = costs[:-1]
     elif how == "answers-another":

@@ -122,6 +122,12 @@ elif how == "never-listens":
 elif how == "asks-for-derivatives":
     say({"id": 1, "linearise": point(1)})
     time.sleep(1000)
+elif how == "edits-itself":
+    ask_all(5)
+    with open(__file__, "a") as own:
+        own.write("# edited\n")
+elif how == "asks-for-nothing":
+    ask([])
 elif how == "searches-too-long":
     for i in range(budget):
         time.sleep(0.3)

@@ -3,6 +3,7 @@
 use super::running_time;
 use crate::analysis::blocks::{ALPHA, Blocks, Unit};
 use crate::analysis::grouped::Analysis;
+use crate::analysis::statistics::median;
 use crate::exhibit::Finding;
 use crate::exhibit::words::{any_of, list, number, p_value, plural, some_of};
 use crate::experiment::Instance;
@@ -181,7 +182,8 @@ impl<'a> Standings<'a> {
         let symbol = self.analysis.plan.cost_symbol();
         let named = self.name(winner);
         let mut told = vec![if self.blocks.unit == Unit::Seeds {
-            let cost = |o| number(self.blocks.median(o));
+            // As the tables have it: ties are for ranks.
+            let cost = |o| number(self.median_cost(o));
             let own = cost(winner);
             format!("The median cost of {named} is {symbol} {own}, {}.", against(&cost))
         } else {
@@ -198,6 +200,14 @@ impl<'a> Standings<'a> {
             list(&effects)
         ));
         told.join(" ")
+    }
+
+    /// The median cost of an optimiser over its runs on the only instance of the blocks.
+    fn median_cost(&self, optimiser: usize) -> f64 {
+        let own = self.analysis.runs.iter().filter(|run| {
+            run.optimiser == optimiser && self.blocks.instances.first() == Some(&run.instance)
+        });
+        median(own.map(|run| run.cost).collect())
     }
 
     /// On how many instances nobody's median is lower; none where the blocks are seeds.
