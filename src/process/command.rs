@@ -67,9 +67,9 @@ impl Command {
         };
         let digest = |name: String| {
             let path = folder.join(&name);
-            let is_file = |found: std::fs::Metadata| match found.is_file() {
-                true => Ok(()),
-                false => Err(std::io::Error::other("it is not a file")),
+            let is_file = |found: std::fs::Metadata| {
+                let error = || std::io::Error::other("it is not a file");
+                found.is_file().then_some(()).ok_or_else(error)
             };
             match std::fs::metadata(&path).and_then(is_file).and_then(|()| std::fs::read(&path)) {
                 Ok(bytes) => Ok((name, sha256(&bytes))),
