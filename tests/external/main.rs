@@ -12,7 +12,17 @@ use polars::prelude::*;
 
 const ZOO: &str = include_str!("zoo.py");
 
-/// What every solver of the zoo has to be told, beside what comes of it: status, evaluations, and what its record says.
+/// How many evaluations depends on how fast the machine is.
+const SOME: u64 = u64::MAX;
+
+/// How long those are waited for that never go on; others as long as it takes.
+const PATIENCE: [(&str, &str); 3] = [
+    ("hangs-at-start", "start_s = 1.5"),
+    ("hangs-between", "silence_s = 3"),
+    ("searches-too-long", "search_s = 1.4"),
+];
+
+/// What comes of every solver of the zoo: status, evaluations, and what its record says.
 const SPECIES: [(&str, &str, u64, &str); 27] = [
     ("behaves", "finished", 10, ""),
     ("overruns-by-one", "budget-spent", 40, ""),
@@ -26,7 +36,7 @@ const SPECIES: [(&str, &str, u64, &str); 27] = [
     ),
     ("is-killed", "failed", 5, "ended (signal: 9 (SIGKILL)) before it was done"),
     ("hangs-at-start", "failed", 0, "did not say `hello` within 1.5 s"),
-    ("hangs-between", "failed", 5, "said nothing for 1 s"),
+    ("hangs-between", "failed", 5, "said nothing for 3 s"),
     ("hangs-at-the-end", "finished", 5, ""),
     ("ignores-signals", "finished", 5, ""),
     ("leaves-grandchildren", "finished", 5, ""),
@@ -43,7 +53,7 @@ const SPECIES: [(&str, &str, u64, &str); 27] = [
     ("asks-after-stop", "budget-spent", 40, ""),
     ("never-listens", "budget-spent", 40, ""),
     ("asks-for-derivatives", "no-derivatives", 0, "the problem has no derivatives"),
-    ("searches-too-long", "failed", 4, "took more than 1.4 s of its own time"),
+    ("searches-too-long", "failed", SOME, "took more than 1.4 s of its own time"),
     ("asks-for-nothing", "failed", 0, "asked for the costs of no points"),
     ("ends-without-done", "failed", 5, "ended (exit status: 0) before it was done"),
 ];
@@ -96,10 +106,11 @@ fn zoo(head: &str, species: &[&str]) -> tempfile::TempDir {
          functions = {{ name = ['sphere'], dimension = [2] }}\n"
     );
     for how in species {
+        let patience = PATIENCE.iter().find(|(name, _)| name == how).map_or("", |(_, keys)| keys);
         let _ = write!(
             experiment,
             "[[optimiser]]\nlabel = '{how}'\nexternal = {{ command = ['python3', 'zoo.py', '{how}'], \
-             timeout = {{ start_s = 1.5, silence_s = 1, search_s = 1.4 }} }}\n"
+             timeout = {{ {patience} }} }}\n"
         );
     }
     fs::write(folder.path().join("zoo.toml"), experiment).unwrap();
@@ -125,7 +136,8 @@ fn every_end_is_told_and_nothing_stays_alive() {
     assert_eq!(found.len(), SPECIES.len());
     for (how, status, evaluations, message) in SPECIES {
         let found = found[how];
-        assert_eq!((found.0, found.1), (status, evaluations), "{how}: {}", found.2);
+        assert_eq!(found.0, status, "{how}: {}", found.2);
+        assert!(evaluations == SOME || found.1 == evaluations, "{how}: {} {}", found.1, found.2);
         let fits = if message.is_empty() { found.2.is_empty() } else { found.2.contains(message) };
         assert!(fits, "{how}: {}", found.2);
     }
@@ -196,10 +208,15 @@ fn problems(kinds: &[&str], optimisers: &[&str]) -> tempfile::TempDir {
     fs::write(folder.path().join("problems.py"), include_str!("problems.py")).unwrap();
     let mut experiment = "name = 'problems'\nseeds = 1\nbudget = { evaluations = 40 }\n".to_owned();
     for how in kinds {
+        let patience = match *how {
+            "hangs-at-start" => "start_s = 1.5",
+            "hangs" => "silence_s = 0.05",
+            _ => "",
+        };
         let _ = write!(
             experiment,
             "[[problem]]\nlabel = '{how}'\nexternal = {{ command = ['python3', 'problems.py', '{how}'], \
-             timeout = {{ start_s = 1.5, silence_s = 0.05 }} }}\n"
+             timeout = {{ {patience} }} }}\n"
         );
     }
     for optimiser in optimisers {
