@@ -348,3 +348,47 @@ fn programs_of_results_are_started_where_they_are_trusted() {
     let messages = texts(&runs(&folder.path().join("out")), "message");
     assert!(messages[0].contains("zoo.py is not what it was"), "{}", messages[0]);
 }
+
+/// The programs of docs/solvers that this machine has the languages for, on the problem beside them: each spends its budget.
+#[test]
+fn solvers_to_start_from_work() {
+    let folder = tempfile::tempdir().unwrap();
+    for entry in fs::read_dir("docs/solvers").unwrap().map(Result::unwrap) {
+        fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
+    }
+    let succeeds = |program: &str, args: &[&str]| {
+        let mut command = Command::new(program);
+        let output = command.args(args).current_dir(folder.path()).output();
+        output.is_ok_and(|output| output.status.success())
+    };
+    let mut commands = vec!["'python3', 'gaussian_search.py'"];
+    if succeeds("python3", &["-c", "import numpy"]) {
+        commands.push("'python3', 'swarm.py'");
+    }
+    let compiled = ["-O2", "-std=c++17", "-o", "gaussian_search", "gaussian_search.cpp"];
+    if succeeds("c++", &["--version"]) {
+        assert!(succeeds("c++", &compiled));
+        commands.push("'./gaussian_search'");
+    }
+    if succeeds("octave-cli", &["--version"]) {
+        commands.push("'octave-cli', '--quiet', 'gaussian_search.m'");
+    }
+    let mut experiment = "name = 'solvers'\nseeds = 2\nbudget = { evaluations = 1000 }\n\
+        [problem]\nexternal = { command = ['python3', 'problem.py'], settings = { dimension = 3 } }\n"
+        .to_owned();
+    for (i, command) in commands.iter().enumerate() {
+        let table = format!("label = '{i}'\nexternal = {{ command = [{command}] }}\n");
+        experiment += "[[optimiser]]\n";
+        experiment += &table;
+    }
+    fs::write(folder.path().join("solvers.toml"), experiment).unwrap();
+    let output = driftless(folder.path(), &["run", "solvers.toml", "--out", "out"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let runs = runs(&folder.path().join("out"));
+    assert_eq!(texts(&runs, "message"), vec![""; 2 * commands.len()]);
+    assert_eq!(texts(&runs, "status"), vec!["budget-spent"; 2 * commands.len()]);
+    assert_eq!(counts(&runs, "evaluations"), vec![1000; 2 * commands.len()]);
+    // A point drawn at random costs some 400 in the mean.
+    let costs = runs.column("certified_j").unwrap().f64().unwrap().clone();
+    assert!(costs.iter().all(|cost| cost.unwrap() < 20.0), "{costs:?}");
+}
