@@ -281,27 +281,6 @@ fn what_no_run_leaves_is_named_and_done_again() {
     }
 }
 
-/// A batch without one of its files is named, too, and done again.
-#[test]
-fn a_missing_file_is_damage() {
-    for table in ["traces", "clocks"] {
-        let temporary = tempfile::tempdir().unwrap();
-        let path = temporary.path();
-        let folder = create(path, FEW);
-        run(&folder);
-        let whole = tables(&folder);
-        let mut gone = files(path);
-        gone.retain(|file| file.parent().unwrap().ends_with(table));
-        fs::remove_file(&gone[0]).unwrap();
-        let folder = open(path);
-        assert_eq!(load(&folder.plan, &folder.store).unwrap().len(), 5);
-        let damaged = folder.store.damaged();
-        assert_eq!((&damaged[0].path, &*damaged[0].reason), (&gone[0], "is missing"));
-        assert_eq!(run(&folder), damaged);
-        assert_eq!(tables(&open(path)), whole);
-    }
-}
-
 /// A file that the system does not let us read may be whole: it is named, and nothing is set aside or done instead.
 #[cfg(target_os = "linux")]
 #[test]

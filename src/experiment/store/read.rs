@@ -18,9 +18,6 @@ use super::{Store, StoreError, TABLES, io_error};
 use crate::experiment::caught::caught;
 use crate::experiment::schema::runs;
 
-/// The table whose file is written last and removed first: where it is, so are the others.
-const LAST: &str = TABLES[TABLES.len() - 1];
-
 /// Fewer batches than that are not worth a thread of their own.
 const BATCHES_PER_THREAD: usize = 20;
 
@@ -176,9 +173,15 @@ impl Store {
         }
     }
 
-    /// The names in the folder `runs`, whose file is written last and removed first.
+    /// The names that are in the folders of all tables: a batch that lacks one is being written or removed,
+    /// or whoever did so was killed.
     fn list(&self) -> Result<BTreeSet<String>, StoreError> {
-        self.list_table(LAST)
+        let mut batches = self.list_table(TABLES[0])?;
+        for table in &TABLES[1..] {
+            let others = self.list_table(table)?;
+            batches.retain(|batch| others.contains(batch));
+        }
+        Ok(batches)
     }
 
     fn list_table(&self, table: &str) -> Result<BTreeSet<String>, StoreError> {
@@ -244,12 +247,7 @@ impl Store {
     fn bytes(&self, table: &str, batch: &str) -> Result<(Vec<u8>, Seal), Flaw> {
         let path = self.path(table, batch);
         let damaged = |reason| Err(self.damaged_file(table, batch, reason));
-        let is_there = |table| fs::symlink_metadata(self.path(table, batch)).is_ok();
         let failed = |error: io::Error| match error.kind() {
-            // Asked in this order, a batch that is removed or written meanwhile does not look like one that lacks a file.
-            io::ErrorKind::NotFound if is_there(LAST) && !is_there(table) => {
-                self.damaged_file(table, batch, "is missing")
-            }
             io::ErrorKind::NotFound => Flaw::Gone,
             _ => self.unreadable_file(table, batch, &error.to_string()),
         };
