@@ -42,8 +42,7 @@ int main() {
         std::string question = "{\"id\":1,\"x\":[";
         for (Numbers& x : points) {
             for (size_t i = 0; i < n; i++) {
-                const double step = radius * (upper[i] - lower[i]) * normal(rng);
-                x[i] = std::clamp(best[i] + step, lower[i], upper[i]);
+                x[i] = std::clamp(best[i] + radius * (upper[i] - lower[i]) * normal(rng), lower[i], upper[i]);
                 char text[32];
                 std::snprintf(text, sizeof text, "%s%.17g", i ? "," : &x == &points[0] ? "[" : ",[", x[i]);
                 question += text;
@@ -53,8 +52,9 @@ int main() {
         std::cout << question << "]}" << std::endl;
         if (!std::getline(std::cin, line) || line.find("\"stop\"") != std::string::npos) return 0;
         const Numbers costs = numbers(line, "cost");
+        const double before = least;
         for (size_t k = 0; k < costs.size(); k++)
-            if (costs[k] < least) least = costs[k], best = points[k], radius *= 2.0;
-        radius *= 0.9;
+            if (costs[k] < least) least = costs[k], best = points[k];
+        radius = std::min(0.5, radius * (least < before ? 1.2 : 0.7));
     }
 }

@@ -31,12 +31,12 @@ while true
     break
   end
   costs = answer.cost;
-  for k = 1:numel(costs)
-    if costs(k) < least
-      least = costs(k);
-      best = points(k, :);
-      radius *= 2;
-    end
+  [lowest, k] = min(costs);
+  if lowest < least
+    least = lowest;
+    best = points(k, :);
+    radius = min(0.5, 1.2 * radius);
+  else
+    radius *= 0.7;
   end
-  radius *= 0.9;
 end

@@ -1,4 +1,4 @@
-"""A solver in Python, without any package: it samples around the best point; the spread shrinks, and doubles where that gains."""
+"""A solver in Python, without any package: it samples around the best point; the spread grows where that gains, and shrinks where not."""
 
 import json
 import random
@@ -36,10 +36,11 @@ def main():
         answer = hear()
         if answer is None:
             return
+        before = least
         for x, cost in zip(points, map(number, answer["cost"])):
             if cost < least:
-                best, least, radius = x, cost, 2.0 * radius
-        radius *= 0.9
+                best, least = x, cost
+        radius = min(0.5, radius * (1.2 if least < before else 0.7))
         centre = best or points[0]
         points = [
             [min(max(c + rng.gauss(0.0, radius) * (b - a), a), b) for c, a, b in zip(centre, lower, upper)]
