@@ -151,7 +151,8 @@ impl ExternalTable {
         let command = self.command(document)?;
         let (name, identity) = (self.name(&command), self.identity(&command));
         let told = self.told.clone().map_or_else(OnceLock::new, OnceLock::from);
-        let patience = self.timeout.patience();
+        // Its processes serve many runs.
+        let patience = Patience { search: None, ..self.timeout.patience() };
         let program = Arc::new(Program::new(command, self.told_settings(), patience));
         Ok(ExternalProblem { name, identity, program, told, table: self })
     }

@@ -14,6 +14,7 @@ use super::entrant::Entrant;
 use super::external::{ExternalProblem, ExternalProblemTable};
 use super::field::{self, EntrantTable, Entry, WrittenEntrant};
 use super::kind::{Registry, Source};
+use super::store::Store;
 use super::stored::ProblemTable;
 use super::subject::Instance;
 use super::targets::TargetTable;
@@ -131,11 +132,13 @@ impl Experiment {
         self.seeds
     }
 
-    /// The programs that it starts, and whether a file of results names them.
+    /// The programs that it starts, and whether a file of results names them: one that says so, or that stands beside runs.
     pub fn programs(&self) -> impl Iterator<Item = (&Command, bool)> {
+        let is_beside_runs = Store::is_in(&self.document.resolve("."));
         let problems = self.instances.iter().filter_map(ExternalProblem::of);
         let solvers = self.field.iter().filter_map(|entry| entry.entrant.program());
-        problems.map(ExternalProblem::program).chain(solvers)
+        let programs = problems.map(ExternalProblem::program).chain(solvers);
+        programs.map(move |(command, is_kept)| (command, is_kept || is_beside_runs))
     }
 
     /// Whether there are the programs that it starts; starts those that are problems and asks what problems they are, where that is

@@ -66,21 +66,21 @@ impl Child {
         let group = group::Group::of(&process).inspect_err(|_| {
             let _ = process.kill().and_then(|()| process.wait());
         })?;
-        let said = Arc::<Mutex<Tail>>::default();
+        let pipes = (process.stdin.take(), process.stdout.take(), process.stderr.take());
         let (to_lines, lines) = sync_channel(WAITING_LINES);
         let (input, to_input) = channel();
-        if let Some(output) = process.stdout.take() {
-            let said = said.clone();
-            std::thread::spawn(move || read_lines(output, &to_lines, &said));
-        }
-        let errors = process.stderr.take().map(|errors| {
-            let said = said.clone();
-            std::thread::spawn(move || read_errors(errors, &said))
-        });
-        if let Some(stdin) = process.stdin.take() {
-            std::thread::spawn(move || write_lines(stdin, &to_input));
-        }
-        Ok(Self { process, group, lines, input: Some(input), said, errors, is_over: false })
+        let said = Arc::<Mutex<Tail>>::default();
+        let mut child =
+            Self { process, group, lines, input: Some(input), said, errors: None, is_over: false };
+        let (Some(stdin), Some(output), Some(errors)) = pipes else {
+            return Err(Failure::new(format!("found no pipes to `{command}`")));
+        };
+        let said = child.said.clone();
+        thread(move || read_lines(output, &to_lines, &said))?;
+        thread(move || write_lines(stdin, &to_input))?;
+        let said = child.said.clone();
+        child.errors = Some(thread(move || read_errors(errors, &said))?);
+        Ok(child)
     }
 
     /// Says a line, which is written while this side goes on. One that nobody reads any more is lost.
@@ -100,8 +100,11 @@ impl Child {
     }
 
     /// Ends it, with all that it has started: it may end by itself once its input has, and is killed if it does not. How it
-    /// ended, where it did so by itself.
+    /// ended, where it did so by itself. Ended once, it is left alone: others may have its number.
     pub(super) fn end(&mut self) -> Option<std::process::ExitStatus> {
+        if self.is_over {
+            return None;
+        }
         // What it still says is read and forgotten, so that it does not wait for a reader.
         self.input = None;
         let deadline = Instant::now() + GRACE;
@@ -160,6 +163,12 @@ impl Drop for Child {
         self.stop();
         let _ = self.process.wait();
     }
+}
+
+/// Starts a thread.
+fn thread(work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, Failure> {
+    let thread = std::thread::Builder::new().spawn(work);
+    thread.map_err(|error| Failure::new(format!("cannot start a thread: {error}")))
 }
 
 /// The end of what was said.

@@ -67,12 +67,8 @@ impl Command {
         };
         let digest = |name: String| {
             let path = folder.join(&name);
-            let is_file = |found: std::fs::Metadata| {
-                let error = || std::io::Error::other("it is not a file");
-                found.is_file().then_some(()).ok_or_else(error)
-            };
-            match std::fs::metadata(&path).and_then(is_file).and_then(|()| std::fs::read(&path)) {
-                Ok(bytes) => Ok((name, sha256(&bytes))),
+            match digest_of(&path) {
+                Ok(digest) => Ok((name, digest)),
                 Err(source) => Err(CommandError::File { path, source }),
             }
         };
@@ -124,15 +120,15 @@ impl Command {
     pub(super) fn check_files(&self) -> Result<(), Failure> {
         for (name, digest) in &self.files {
             let path = self.folder.join(name);
-            let found = std::fs::read(&path).map(|bytes| sha256(&bytes));
-            if found.is_err() {
-                return Err(format!("{} is gone", path.display()).into());
-            }
-            if found.is_ok_and(|found| found != *digest) {
-                let path = path.display();
-                return Err(
-                    format!("{path} is not what it was when the experiment was read").into()
-                );
+            let found = digest_of(&path);
+            let path = path.display();
+            match found {
+                Err(error) => return Err(format!("cannot read {path}: {error}").into()),
+                Ok(found) if found != *digest => {
+                    let told = format!("{path} is not what it was when the experiment was read");
+                    return Err(told.into());
+                }
+                Ok(_) => {}
             }
         }
         Ok(())
@@ -156,6 +152,16 @@ impl Command {
 impl fmt::Display for Command {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.words.join(" "))
+    }
+}
+
+/// The SHA-256 of a file.
+fn digest_of(path: &Path) -> std::io::Result<String> {
+    // What is not a file may have no end.
+    if std::fs::metadata(path)?.is_file() {
+        Ok(sha256(&std::fs::read(path)?))
+    } else {
+        Err(std::io::Error::other("it is not a file"))
     }
 }
 

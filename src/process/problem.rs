@@ -10,7 +10,7 @@ use super::answer::{self, VERSION};
 use super::command::{Command, Patience};
 use super::conversation::Conversation;
 use super::numbers::Numbers;
-use super::request::{parsed, shortened};
+use super::request::{parsed, plural, shortened};
 use crate::search::{Bounds, Evaluation, Failure, Points, Problem, Stop, Watch};
 
 /// By how much a cost may be below the least one, as a share of it or of one.
@@ -230,10 +230,6 @@ impl Served {
     }
 }
 
-fn plural(count: usize, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
-}
-
 /// The costs of a reply to a question about so many points, or what is wrong with it.
 fn evaluations(
     line: &str,
@@ -315,9 +311,10 @@ impl Problem for Served {
 
 impl Drop for Served {
     fn drop(&mut self) {
+        let is_interrupted = self.is_interrupted();
         let talk = self.talk.get_mut().unwrap_or_else(PoisonError::into_inner);
         if let Some(process) = talk.process.take()
-            && !self.interrupted.get().is_some_and(|flag| flag.load(Ordering::Relaxed))
+            && !is_interrupted
         {
             self.program.give_back(process);
         }

@@ -7,7 +7,7 @@ use super::answer::{self, Answer, Opening};
 use super::command::{Command, Patience};
 use super::conversation::Conversation;
 use super::numbers::Coordinates;
-use super::request::Request;
+use super::request::{Request, plural};
 use crate::optimiser::Optimiser;
 use crate::search::{Bounds, Evaluation, Oracle, Points, Rng, Stop};
 
@@ -61,9 +61,8 @@ impl Optimiser for Solver {
         let outcome = search.run(oracle);
         oracle.stop_clock();
         if search.outside > 0 {
-            let outside = search.outside;
-            let points = if outside == 1 { "point" } else { "points" };
-            oracle.remark(format!("{outside} {points} outside the box cost infinitely much"));
+            let points = plural(search.outside, "point");
+            oracle.remark(format!("{points} outside the box cost infinitely much"));
         }
         // A run of a program that was edited meanwhile is none of the one that the experiment names.
         let outcome = match outcome {
@@ -101,7 +100,7 @@ struct Hello {
 struct Search<'a> {
     process: &'a mut Conversation,
     /// Points that were outside the box.
-    outside: u64,
+    outside: usize,
 }
 
 impl Search<'_> {

@@ -337,6 +337,16 @@ fn programs_of_results_are_started_where_they_are_trusted() {
     let refused = driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(said(&refused).contains("starts `python3 zoo.py behaves`"), "{}", said(&refused));
+    // A file that does not say that it is one of results, in a folder of results.
+    let file = folder.path().join("out/experiment.toml");
+    let kept = fs::read_to_string(&file).unwrap();
+    let is_own = |line: &&str| !line.starts_with("folder = ") && !line.contains("sha256");
+    let silent: Vec<&str> = kept.lines().filter(is_own).collect();
+    fs::write(&file, silent.join("\n").replace("\"zoo.py\" = ", "# ")).unwrap();
+    let refused = driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused).contains("pass --trust"), "{}", said(&refused));
+    fs::write(&file, kept).unwrap();
     let trusted =
         driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out", "--trust"]);
     assert!(trusted.status.success(), "{}", said(&trusted));
