@@ -14,6 +14,7 @@ use crate::experiment::{
     Damage, Experiment, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard,
     ShardChoice, Store,
 };
+use crate::output::folder_of;
 use crate::registry::registry;
 use crate::report::Target;
 
@@ -149,7 +150,9 @@ impl Run {
     /// where the user says so.
     fn tell_programs(&self, experiment: &Experiment) -> Result<(), CliError> {
         let mut told = Vec::new();
-        let mut is_from_results = false;
+        // A file need not say where it comes from.
+        let folder = self.file.as_deref().map(folder_of);
+        let mut is_from_results = folder.is_some_and(Folder::has_runs);
         for (command, is_kept) in experiment.programs() {
             is_from_results |= is_kept;
             let program = format!("`{command}` in {}", command.folder().display());
@@ -160,7 +163,7 @@ impl Run {
         for program in &told {
             note!("note: this experiment starts {program}");
         }
-        if !is_from_results || self.trust {
+        if told.is_empty() || !is_from_results || self.trust {
             return Ok(());
         }
         if confirmed("Start what these results name? [y/N] ") {

@@ -14,7 +14,6 @@ use super::entrant::Entrant;
 use super::external::{ExternalProblem, ExternalProblemTable};
 use super::field::{self, EntrantTable, Entry, WrittenEntrant};
 use super::kind::{Registry, Source};
-use super::store::Store;
 use super::stored::ProblemTable;
 use super::subject::Instance;
 use super::targets::TargetTable;
@@ -132,13 +131,11 @@ impl Experiment {
         self.seeds
     }
 
-    /// The programs that it starts, and whether a file of results names them: one that says so, or that stands beside runs.
+    /// The programs that it starts, and whether the file says that it is one of results.
     pub fn programs(&self) -> impl Iterator<Item = (&Command, bool)> {
-        let is_beside_runs = Store::is_in(&self.document.resolve("."));
         let problems = self.instances.iter().filter_map(ExternalProblem::of);
         let solvers = self.field.iter().filter_map(|entry| entry.entrant.program());
-        let programs = problems.map(ExternalProblem::program).chain(solvers);
-        programs.map(move |(command, is_kept)| (command, is_kept || is_beside_runs))
+        problems.map(ExternalProblem::program).chain(solvers)
     }
 
     /// Whether there are the programs that it starts; starts those that are problems and asks what problems they are, where that is

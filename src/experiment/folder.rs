@@ -140,6 +140,11 @@ impl Folder {
         Ok(Self { path: path.to_owned(), plan, store, earlier: None })
     }
 
+    /// Whether there are tables of runs in a folder, whatever its experiment says.
+    pub fn has_runs(path: &Path) -> bool {
+        Store::is_in(path)
+    }
+
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
