@@ -10,6 +10,7 @@ use crate::reorientation::{
     Assessment, BestKnown, Block, Excursions, FamilyName, FamilySpec, Formulated, Reach,
     SearchedFamily,
 };
+use crate::search::Failure;
 use crate::trajectory::{Family, SinePolynomial};
 
 /// What a search spent.
@@ -32,6 +33,8 @@ pub(super) struct Found<F: Family> {
     pub(super) walls: Option<Walls>,
     pub(super) spent: Spent,
     pub(super) interrupted: bool,
+    /// Why the search ended early.
+    pub(super) failure: Option<Failure>,
 }
 
 /// The best motion of the paper's family.
@@ -107,10 +110,11 @@ impl<F: SearchedFamily> Found<F> {
             seconds: own.seconds + more.seconds,
         };
         let interrupted = self.interrupted || other.interrupted;
+        let failure = other.failure.clone().or(self.failure.clone());
         let is_better = other.reach == Reach::Reached
             || other.assessment.residual() < self.assessment.residual();
         let found = if is_better { other } else { self };
-        Self { spent, interrupted, ..found }
+        Self { spent, interrupted, failure, ..found }
     }
 
     pub(super) fn json<'a>(

@@ -20,6 +20,7 @@ mod check;
 mod compact;
 #[cfg(feature = "harness")]
 mod export;
+mod family;
 mod found;
 mod list;
 mod motion;
@@ -32,6 +33,8 @@ mod report;
 mod results;
 #[cfg(feature = "harness")]
 mod run;
+#[cfg(feature = "harness")]
+mod serve;
 mod signals;
 #[cfg(feature = "harness")]
 mod status;
@@ -87,6 +90,9 @@ enum Verb {
     Export(export::Export),
     /// Find the best motion for one task
     Plan(plan::Plan),
+    /// Offer a task to an optimiser of yours, which asks for costs
+    #[cfg(feature = "harness")]
+    Serve(serve::Serve),
     /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
     Replay(replay::Replay),
     /// Show optimisers, problems and robots with their settings
@@ -128,6 +134,9 @@ enum CliError {
     /// A motion is not what the user requires.
     #[error("not as required: the motion {0}")]
     Required(String),
+    /// A search could not begin or go on.
+    #[error("the search failed: {0}")]
+    Search(#[from] crate::search::Failure),
     /// A report of more runs was not replaced.
     #[cfg(feature = "harness")]
     #[error("{0}")]
@@ -267,6 +276,8 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "harness")]
         Verb::Export(export) => export.execute(),
         Verb::Plan(plan) => plan.execute(),
+        #[cfg(feature = "harness")]
+        Verb::Serve(serve) => serve.execute(),
         Verb::Replay(replay) => replay.execute(),
         Verb::List(list) => list.execute(),
         Verb::Check(check) => check.execute(),

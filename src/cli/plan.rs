@@ -6,18 +6,18 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
-use toml::Spanned;
 
+use super::family::FamilyOptions;
 use super::found::{Found, OtherFamily, Spent};
 use super::motion::MotionFiles;
 use super::progress::Bar;
 use super::walls::Walls;
 use super::{CliError, read_or, shown, start_worker_threads, warn_of, watch};
 use crate::input::{InputError, nearest};
-use crate::optimiser::{Scp, Settings};
+use crate::optimiser::{Optimiser, Scp, Settings};
 use crate::reorientation::{
     Accuracy, BestKnown, FamilyName, FamilySpec, Formulated, Formulation, Reach, Reorientation,
-    SearchedFamily, TaskFile, TaskProblem, TrajectoryTable,
+    SearchedFamily, TaskFile, TaskProblem,
 };
 use crate::search::{BoundsError, Oracle, Rng, Stop};
 use crate::task::{Task, TaskTable};
@@ -33,16 +33,8 @@ pub(super) struct Plan {
     /// variables, unless told otherwise
     #[arg(long, value_name = "NAME", default_value = "scp")]
     optimiser: String,
-    /// Family of motions, instead of the file's: splines are faster than sine polynomials and reach more goals, and are the
-    /// choice of `scp` where neither says
-    #[arg(long, value_name = "NAME")]
-    family: Option<FamilyName>,
-    /// Pieces of a spline, instead of the file's; 80 unless the file names a family
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(4..=1000))]
-    pieces: Option<u16>,
-    /// Degree of a spline, instead of the file's or 4: 3 has a constant jerk on each piece, 4 a continuous one, 5 a smooth one
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(3..=5))]
-    degree: Option<u8>,
+    #[command(flatten)]
+    family: FamilyOptions,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -76,7 +68,7 @@ const LESS_TIME: f64 = 100.0;
 const OTHER_STARTS: usize = 12;
 
 /// Says what is doubtful about a task.
-fn warn_of_task(task: &Task) {
+pub(super) fn warn_of_task(task: &Task) {
     warn_of(&task.robot);
     if task.base_weight >= 1.0 {
         note!(
@@ -92,9 +84,10 @@ impl Plan {
         let settings = find_optimiser(&self.optimiser)?;
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;
         let TaskFile { task, trajectory } = TaskFile::read(&document)?;
-        let is_named = self.family.is_some() || trajectory.states_family();
-        let file = TaskFile { trajectory: self.over(trajectory, &settings), task };
-        self.check_options(file.trajectory.family())?;
+        let is_named = self.family.is_named() || trajectory.states_family();
+        // Other optimisers get nowhere among hundreds of variables.
+        let is_spline = matches!(settings, Settings::Scp(_));
+        let file = TaskFile { trajectory: self.family.over(trajectory, is_spline)?, task };
         let refused = |error| document.error_at(0..0, error, None);
         let problem = file.problem(&document)?;
         if let Some(residual) = problem.task().already_there() {
@@ -111,7 +104,14 @@ impl Plan {
                 let mut found = {
                     let _bar = Bar::new(self.budget, watch());
                     let longest = boxes.duration[1];
-                    search(&settings, &formulated, &formulated, longest, self.seed, self.budget)?
+                    search(
+                        &*settings.optimiser(),
+                        &formulated,
+                        &formulated,
+                        longest,
+                        self.seed,
+                        self.budget,
+                    )?
                 };
                 let walls =
                     Walls::of(&found.problem, &found.coefficients, found.assessment.duration);
@@ -163,38 +163,6 @@ impl Plan {
         Ok(())
     }
 
-    /// What a file says of the family, with what the command line says instead.
-    fn over(&self, mut table: TrajectoryTable, settings: &Settings) -> TrajectoryTable {
-        // Other optimisers get nowhere among hundreds of variables.
-        let is_spline =
-            matches!(settings, Settings::Scp(_)) || self.pieces.is_some() || self.degree.is_some();
-        if is_spline {
-            table = table.planned();
-        }
-        if let Some(family) = self.family {
-            table = table.with_family(family);
-        }
-        if let Some(pieces) = self.pieces {
-            table = table.with_pieces(Spanned::new(0..0, pieces.into()));
-        }
-        if let Some(degree) = self.degree {
-            table = table.with_degree(Spanned::new(0..0, degree.into()));
-        }
-        table
-    }
-
-    /// Whether all options are for the family.
-    fn check_options(&self, family: FamilyName) -> Result<(), CliError> {
-        let options = [("--pieces", self.pieces.is_some()), ("--degree", self.degree.is_some())];
-        match options.into_iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) if family != FamilyName::Spline => Err(CliError::Usage {
-                message: format!("found {option}, which is for `--family spline` alone"),
-                help: None,
-            }),
-            _ => Ok(()),
-        }
-    }
-
     /// Searches splines; where none reaches the goal and one may, again from other starts and with the goal weighing more.
     fn search_splines(
         &self,
@@ -211,8 +179,9 @@ impl Plan {
             }),
             other => other.clone(),
         };
+        let optimiser = settings.optimiser();
         let own = Formulated::free_form(Arc::new(problem.clone())).map_err(&refused)?;
-        let mut found = search(&settings, &own, &own, longest, self.seed, self.budget)?;
+        let mut found = search(&*optimiser, &own, &own, longest, self.seed, self.budget)?;
         // The longer motions are, the less their time may weigh if the goal is to count.
         let own_weight = 1.0 - problem.task().base_weight;
         let mut time_weight = own_weight.min(1.0 / found.assessment.duration);
@@ -227,7 +196,7 @@ impl Plan {
             let demanding = Reorientation::over(Arc::new(task), family, accuracy);
             let formulated = Formulated::free_form(Arc::new(demanding)).map_err(&refused)?;
             let seed = self.seed.wrapping_add(round);
-            found = found.or(search(&settings, &formulated, &own, longest, seed, left)?);
+            found = found.or(search(&*optimiser, &formulated, &own, longest, seed, left)?);
         }
         Ok(found)
     }
@@ -238,7 +207,7 @@ impl Plan {
         let terms = problem.family().terms();
         let formulated = Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes).ok()?;
         let scp = Scp { starts: NonZeroUsize::new(OTHER_STARTS), ..Scp::default() };
-        let (scp, longest) = (Settings::Scp(scp), boxes.duration[1]);
+        let longest = boxes.duration[1];
         let found = search(&scp, &formulated, &formulated, longest, self.seed, self.budget).ok()?;
         (!found.interrupted).then(|| OtherFamily::new(terms, &found))
     }
@@ -263,6 +232,9 @@ impl Plan {
                 say!("  not stated     {} (as in the paper's task)", inherited.join(", "));
             }
             say!("{}", found.told(known, other));
+        }
+        if let Some(failure) = &found.failure {
+            note!("warning: {}", CliError::Search(failure.clone()));
         }
         found.warn(self.budget);
         self.say_entry(found, task);
@@ -304,8 +276,8 @@ impl Plan {
 }
 
 /// Runs an optimiser once; `problem`, of which `searched` may be one with other weights, judges what it finds.
-fn search<F: Family>(
-    settings: &Settings,
+pub(super) fn search<F: Family>(
+    optimiser: &dyn Optimiser,
     searched: &Formulated<F>,
     problem: &Formulated<F>,
     longest: f64,
@@ -315,17 +287,15 @@ fn search<F: Family>(
     let watch = watch();
     let mut oracle = Oracle::new(searched, budget, &watch).parallel();
     let started = Instant::now();
-    let stop = settings.optimiser().minimise(&mut oracle, &mut Rng::new(seed));
+    let stop = optimiser.minimise(&mut oracle, &mut Rng::new(seed));
     let seconds = started.elapsed().as_secs_f64();
     let interrupted = stop == Err(Stop::Interrupted);
-    if let Err(Stop::Failed(failure)) = stop {
-        note!("warning: the search failed: {failure}");
-    }
+    let failure = if let Err(Stop::Failed(failure)) = stop { Some(failure) } else { None };
     let Some(best) = oracle.best().cloned() else {
-        return Err(if interrupted {
-            CliError::Interrupted("no motion was found before".to_owned())
-        } else {
-            CliError::NoMotion
+        return Err(match failure {
+            Some(failure) => CliError::Search(failure),
+            None if interrupted => CliError::Interrupted("no motion was found before".to_owned()),
+            None => CliError::NoMotion,
         });
     };
     let (coefficients, assessment) = problem.certify(&best.x);
@@ -341,7 +311,7 @@ fn search<F: Family>(
     };
     let reach = Reach::of(problem.task().task(), &assessment, longest);
     let problem = problem.clone();
-    Ok(Found { problem, coefficients, assessment, reach, walls: None, spent, interrupted })
+    Ok(Found { problem, coefficients, assessment, reach, walls: None, spent, interrupted, failure })
 }
 
 fn find_optimiser(name: &str) -> Result<Settings, CliError> {

@@ -31,6 +31,9 @@ pub(super) struct ExternalTable {
     files: Option<Vec<String>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     formulation: Option<String>,
+    /// Whether it is spoken with over a loopback socket.
+    #[serde(default, skip_serializing_if = "is_false")]
+    socket: bool,
     #[serde(default, skip_serializing_if = "timeouts_are_default")]
     timeout: TimeoutTable,
     /// In results: where it was started.
@@ -74,6 +77,11 @@ impl Default for TimeoutTable {
     }
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
 fn timeouts_are_default(timeout: &TimeoutTable) -> bool {
     *timeout == TimeoutTable::default()
 }
@@ -111,7 +119,10 @@ impl ExternalTable {
             (Some(folder), Some(files)) => Command::known(words, folder, files.clone()),
             _ => Command::new(words, &here, self.files.as_deref()),
         };
-        command.map_err(|error| document.error_at(self.command.span(), error.to_string(), None))
+        match command {
+            Ok(command) => Ok(command.over_socket(self.socket)),
+            Err(error) => Err(document.error_at(self.command.span(), error.to_string(), None)),
+        }
     }
 
     pub(super) fn name(&self, command: &Command) -> String {

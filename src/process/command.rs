@@ -17,6 +17,8 @@ pub struct Command {
     folder: PathBuf,
     /// The SHA-256 of each file, by its name.
     files: BTreeMap<String, String>,
+    /// Whether it is spoken with over a socket.
+    has_socket: bool,
 }
 
 /// How long a process is waited for; the time that this side takes does not count.
@@ -73,7 +75,7 @@ impl Command {
             }
         };
         let files = named.into_iter().map(digest).collect::<Result<_, _>>()?;
-        Ok(Self { words, folder: folder.to_owned(), files })
+        Ok(Self { words, folder: folder.to_owned(), files, has_socket: false })
     }
 
     /// One whose files are known by their digests, whether they are still there or not.
@@ -83,7 +85,18 @@ impl Command {
         files: BTreeMap<String, String>,
     ) -> Result<Self, CommandError> {
         check(&words)?;
-        Ok(Self { words, folder: folder.into(), files })
+        Ok(Self { words, folder: folder.into(), files, has_socket: false })
+    }
+
+    /// The same, spoken with over a loopback socket and not over its standard streams.
+    #[must_use]
+    pub fn over_socket(self, has_socket: bool) -> Self {
+        Self { has_socket, ..self }
+    }
+
+    /// Whether it is spoken with over a socket.
+    pub(super) fn has_socket(&self) -> bool {
+        self.has_socket
     }
 
     /// Program and arguments.

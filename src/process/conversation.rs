@@ -1,22 +1,33 @@
-//! Words with a process, within its deadlines.
+//! Words with a process or a client, within their deadlines.
 
 use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use super::child::{Child, Line};
+use super::child::Child;
 use super::command::{Command, Patience};
+use super::guest::Guest;
+use super::lines::Line;
 use super::request::parsed;
 use crate::search::{Failure, Stop};
 
 /// How often an interruption is looked for.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// A process that is spoken with.
+/// Who is spoken with.
+#[derive(Debug)]
+enum Peer {
+    /// A process of this program.
+    Process(Child),
+    /// Somebody who came.
+    Guest(Guest),
+}
+
+/// A process or a client that is spoken with.
 #[derive(Debug)]
 pub(super) struct Conversation {
-    child: Child,
+    peer: Peer,
     name: String,
     /// When it should not end.
     too_early: &'static str,
@@ -35,10 +46,20 @@ impl Conversation {
         too_early: &'static str,
         opening: String,
     ) -> Result<Self, Failure> {
-        let child = Child::start(command)?;
-        child.say(opening);
-        let name = command.to_string();
-        Ok(Self { child, name, too_early, patience, questions: 0, waited: Duration::ZERO })
+        let peer = Peer::Process(Child::start(command)?);
+        let process = Self::with(peer, format!("`{command}`"), patience, too_early);
+        process.say(opening);
+        Ok(process)
+    }
+
+    /// With a client, which is waited for as long as it takes.
+    pub(super) fn with_guest(guest: Guest) -> Self {
+        let patience = Patience { start: Duration::MAX, silence: Duration::MAX, search: None };
+        Self::with(Peer::Guest(guest), "the client".to_owned(), patience, "before it was done")
+    }
+
+    fn with(peer: Peer, name: String, patience: Patience, too_early: &'static str) -> Self {
+        Self { peer, name, too_early, patience, questions: 0, waited: Duration::ZERO }
     }
 
     /// The number of the next question, unlike all before.
@@ -49,7 +70,10 @@ impl Conversation {
 
     /// Says a line.
     pub(super) fn say(&self, line: String) {
-        self.child.say(line);
+        match &self.peer {
+            Peer::Process(child) => child.say(line),
+            Peer::Guest(guest) => guest.say(line),
+        }
     }
 
     /// Waits until it is ready; what it says of itself.
@@ -114,7 +138,12 @@ impl Conversation {
                 return Err(Stop::Interrupted);
             }
             let look = Instant::now() + LOOK;
-            if let Some(line) = self.child.next(deadline.map_or(look, |d| d.min(look))) {
+            let until = deadline.map_or(look, |deadline| deadline.min(look));
+            let line = match &self.peer {
+                Peer::Process(child) => child.next(until),
+                Peer::Guest(guest) => guest.next(until),
+            };
+            if let Some(line) = line {
                 break line;
             }
             if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
@@ -129,28 +158,41 @@ impl Conversation {
         }
     }
 
-    /// Ends the process, with all that it has started.
+    /// Ends the process, with all that it has started, or says nothing more to the client.
     pub(super) fn close(&mut self) {
-        self.child.end();
+        match &mut self.peer {
+            Peer::Process(child) => {
+                child.end();
+            }
+            Peer::Guest(guest) => guest.end(),
+        }
     }
 
-    /// What it did wrong, with its last words. It is ended; what it says to that is no part of them.
+    /// What it did wrong, with its last words. A process is ended; what it says to that is no part of them.
     pub(super) fn failure(&mut self, what: &str) -> Failure {
         let failure = self.told(what);
-        self.child.end();
+        if let Peer::Process(child) = &mut self.peer {
+            child.end();
+        }
         failure
     }
 
     fn ended(&mut self) -> Failure {
-        let status = self.child.end();
+        let status = match &mut self.peer {
+            Peer::Process(child) => child.end(),
+            Peer::Guest(_) => None,
+        };
         let how = status
             .map_or_else(|| "closed its output".to_owned(), |status| format!("ended ({status})"));
         self.told(&format!("{how} {}", self.too_early))
     }
 
     fn told(&self, what: &str) -> Failure {
-        let words = self.child.last_words();
+        let words = match &self.peer {
+            Peer::Process(child) => child.last_words(),
+            Peer::Guest(guest) => guest.last_words(),
+        };
         let words = if words.is_empty() { words } else { format!("; its last words: {words}") };
-        Failure::new(format!("`{}` {what}{words}", self.name))
+        Failure::new(format!("{} {what}{words}", self.name))
     }
 }

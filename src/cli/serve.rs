@@ -1,0 +1,139 @@
+//! `driftless serve`.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::Args;
+
+use super::family::FamilyOptions;
+use super::found::Found;
+use super::motion::MotionFiles;
+use super::plan::{search, warn_of_task};
+use super::progress::Bar;
+use super::walls::Walls;
+use super::{CliError, read_or, shown, start_worker_threads, watch};
+use crate::process::{Client, Socket};
+use crate::reorientation::{
+    BestKnown, Formulated, Formulation, SearchedFamily, TaskFile, TaskProblem,
+};
+use crate::task::TaskTable;
+
+/// Offer a task to an optimiser of yours, which asks for costs
+#[derive(Debug, Args)]
+pub(super) struct Serve {
+    /// Task file; without one, the paper's task
+    #[arg(value_name = "TASK.toml")]
+    file: Option<PathBuf>,
+    /// Variables of sine polynomials to search in: raw, scaled or time-free
+    #[arg(long, value_name = "NAME")]
+    formulation: Option<String>,
+    #[command(flatten)]
+    family: FamilyOptions,
+    /// Seed that the optimiser is told, below 2³¹
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(..1 << 31))]
+    seed: u64,
+    /// Evaluations that it may spend
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..))]
+    budget: u64,
+    /// Listen on a port of 127.0.0.1, or on any that is free, instead of standard input and output. Who connects has to show
+    /// the token of the variable DRIFTLESS_TOKEN or, if that is not set, the one that is printed
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "0")]
+    listen: Option<u16>,
+    #[command(flatten)]
+    files: MotionFiles,
+}
+
+impl Serve {
+    pub(super) fn execute(self) -> Result<(), CliError> {
+        start_worker_threads()?;
+        self.files.check()?;
+        let formulation = self.formulation()?;
+        let document = read_or(self.file.as_deref(), TaskFile::paper)?;
+        let TaskFile { task, trajectory } = TaskFile::read(&document)?;
+        let file = TaskFile { trajectory: self.family.over(trajectory, false)?, task };
+        let refused = |error| document.error_at(0..0, error, None);
+        let problem = file.problem(&document)?;
+        warn_of_task(problem.task());
+        if problem.task().already_there().is_some() {
+            let task = shown(self.file.as_ref(), "the paper's task");
+            let message = format!("{task}: already there: there is nothing to search");
+            return Err(CliError::Usage { message, help: None });
+        }
+        match problem {
+            TaskProblem::SinePolynomial(problem, boxes) => {
+                let formulation = formulation.unwrap_or(Formulation::TimeFree);
+                let formulated =
+                    Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
+                let walls = |found: &Found<_>| {
+                    Walls::of(&found.problem, &found.coefficients, found.assessment.duration)
+                };
+                self.serve(&formulated, boxes.duration[1], &file.task, |found| Some(walls(found)))
+            }
+            TaskProblem::Spline(problem, boxes) => {
+                let problem = Arc::new(problem);
+                let formulated = match formulation {
+                    None | Some(Formulation::TimeFree) => Formulated::free_form(problem),
+                    Some(Formulation::Scaled) => Formulated::free_form_scaled(problem, &boxes),
+                    Some(Formulation::Raw) => {
+                        return Err(CliError::Usage {
+                            message: "found `--formulation raw` for splines, expected scaled or time-free"
+                                .to_owned(),
+                            help: None,
+                        });
+                    }
+                };
+                let formulated = formulated.map_err(refused)?;
+                self.serve(&formulated, boxes.duration[1], &file.task, |_| None)
+            }
+        }
+    }
+
+    fn formulation(&self) -> Result<Option<Formulation>, CliError> {
+        let Some(name) = &self.formulation else { return Ok(None) };
+        match Formulation::named(Some(name)) {
+            Some(formulation) => Ok(Some(formulation)),
+            None => Err(CliError::Usage {
+                message: format!("no formulation `{name}`, expected raw, scaled or time-free"),
+                help: None,
+            }),
+        }
+    }
+
+    /// The other end of the line.
+    fn client(&self) -> Result<Client, CliError> {
+        let Some(port) = self.listen else { return Ok(Client::on_standard_streams()?) };
+        let socket = Socket::bind(port)?;
+        note!("listening on {}, token {}", socket.address(), socket.token());
+        Ok(Client::on_socket(socket)?)
+    }
+
+    /// Answers until the search is over, and says what it has come to: to the optimiser, and to people.
+    fn serve<F: SearchedFamily>(
+        &self,
+        problem: &Formulated<F>,
+        longest: f64,
+        task: &TaskTable,
+        walls: impl FnOnce(&Found<F>) -> Option<Walls>,
+    ) -> Result<(), CliError> {
+        let client = self.client()?;
+        let mut found = {
+            let _bar = Bar::new(self.budget, watch());
+            search(&client, problem, problem, longest, self.seed, self.budget)?
+        };
+        found.walls = walls(&found);
+        let (name, known) = (client.name(), BestKnown::of(found.problem.task()));
+        let json = {
+            let file = shown(self.file.as_ref(), "xiao2023");
+            found.json(file, &name, self.seed, task.inherited(), known, None)
+        };
+        client.tell(&json);
+        let file = shown(self.file.as_ref(), "the paper's task");
+        note!("{file} by {name}, seed {}", self.seed);
+        note!("{}", found.told(known, None));
+        self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
+        if found.interrupted {
+            return Err(CliError::Interrupted("this is the best motion so far".to_owned()));
+        }
+        found.failure.map_or(Ok(()), |failure| Err(CliError::Search(failure)))
+    }
+}
