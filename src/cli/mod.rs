@@ -135,7 +135,7 @@ enum CliError {
     #[error("not as required: the motion {0}")]
     Required(String),
     /// A search could not begin or go on.
-    #[error("the search failed: {0}")]
+    #[error("the search failed")]
     Search(#[from] crate::search::Failure),
     /// A report of more runs was not replaced.
     #[cfg(feature = "harness")]

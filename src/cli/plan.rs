@@ -234,7 +234,7 @@ impl Plan {
             say!("{}", found.told(known, other));
         }
         if let Some(failure) = &found.failure {
-            note!("warning: {}", CliError::Search(failure.clone()));
+            note!("warning: the search failed: {failure}");
         }
         found.warn(self.budget);
         self.say_entry(found, task);

@@ -34,11 +34,13 @@ impl Bar {
             let (bar, done) = (bar.clone(), done.clone());
             let paint = move || {
                 let mut said = Instant::now();
+                let mut shown = 0;
                 while !done.load(Ordering::Relaxed) {
-                    bar.set_position(watch.evaluations());
-                    if !on_terminal && said.elapsed() >= BETWEEN_LINES {
-                        said = Instant::now();
-                        note!("{} of {evaluations} evaluations", watch.evaluations());
+                    let made = watch.evaluations();
+                    bar.set_position(made);
+                    if !on_terminal && said.elapsed() >= BETWEEN_LINES && made != shown {
+                        (said, shown) = (Instant::now(), made);
+                        note!("{made} of {evaluations} evaluations");
                     }
                     park_timeout(Duration::from_millis(100));
                 }
