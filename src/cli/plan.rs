@@ -105,7 +105,7 @@ impl Plan {
                     let _bar = Bar::new(self.budget, watch());
                     let longest = boxes.duration[1];
                     search(
-                        &*settings.optimiser(),
+                        settings.optimiser(),
                         &formulated,
                         &formulated,
                         longest,
@@ -181,7 +181,7 @@ impl Plan {
         };
         let optimiser = settings.optimiser();
         let own = Formulated::free_form(Arc::new(problem.clone())).map_err(&refused)?;
-        let mut found = search(&*optimiser, &own, &own, longest, self.seed, self.budget)?;
+        let mut found = search(optimiser, &own, &own, longest, self.seed, self.budget)?;
         // The longer motions are, the less their time may weigh if the goal is to count.
         let own_weight = 1.0 - problem.task().base_weight;
         let mut time_weight = own_weight.min(1.0 / found.assessment.duration);
@@ -196,7 +196,7 @@ impl Plan {
             let demanding = Reorientation::over(Arc::new(task), family, accuracy);
             let formulated = Formulated::free_form(Arc::new(demanding)).map_err(&refused)?;
             let seed = self.seed.wrapping_add(round);
-            found = found.or(search(&*optimiser, &formulated, &own, longest, seed, left)?);
+            found = found.or(search(optimiser, &formulated, &own, longest, seed, left)?);
         }
         Ok(found)
     }

@@ -36,7 +36,7 @@ pub(super) struct Serve {
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..))]
     budget: u64,
     /// Listen on a port of 127.0.0.1, or on any that is free, instead of standard input and output. Who connects has to show
-    /// the token of the variable DRIFTLESS_TOKEN or, if that is not set, the one that is printed
+    /// the token of the variable `DRIFTLESS_TOKEN` or, if that is not set, the one that is printed
     #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "0")]
     listen: Option<u16>,
     #[command(flatten)]

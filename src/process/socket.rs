@@ -43,8 +43,7 @@ impl Socket {
         getrandom::fill(&mut bytes).map_err(|error| {
             Failure::new(format!("found no random numbers for a token: {error}"))
         })?;
-        let token = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-        Self::at(0, token)
+        Self::at(0, format!("{:032x}", u128::from_le_bytes(bytes)))
     }
 
     /// At a port of 127.0.0.1, 0 for one that the system chooses, with the token that the environment tells in
