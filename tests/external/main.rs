@@ -1,6 +1,9 @@
 //! Optimisers that are programs: what they may do, and what becomes of those that misbehave.
 #![cfg(all(unix, feature = "harness"))]
 
+mod packages;
+mod serve;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
@@ -97,8 +100,13 @@ fn alive(folder: &Path) -> Vec<String> {
     inside.map(|process| fs::read_to_string(process.join("cmdline")).unwrap_or_default()).collect()
 }
 
-/// A folder with the zoo and an experiment on it.
+/// A folder with the zoo and an experiment on it, spoken with over standard streams.
 fn zoo(head: &str, species: &[&str]) -> tempfile::TempDir {
+    zoo_by(head, species, "")
+}
+
+/// The same with more keys for every solver.
+fn zoo_by(head: &str, species: &[&str], keys: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("zoo.py"), ZOO).unwrap();
     let mut experiment = format!(
@@ -110,7 +118,7 @@ fn zoo(head: &str, species: &[&str]) -> tempfile::TempDir {
         let _ = write!(
             experiment,
             "[[optimiser]]\nlabel = '{how}'\nexternal = {{ command = ['python3', 'zoo.py', '{how}'], \
-             timeout = {{ {patience} }} }}\n"
+             timeout = {{ {patience} }}{keys} }}\n"
         );
     }
     fs::write(folder.path().join("zoo.toml"), experiment).unwrap();
@@ -121,8 +129,15 @@ fn zoo(head: &str, species: &[&str]) -> tempfile::TempDir {
 #[cfg(target_os = "linux")]
 #[test]
 fn every_end_is_told_and_nothing_stays_alive() {
+    for keys in ["", ", socket = true"] {
+        ends_are_told(keys);
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn ends_are_told(keys: &str) {
     let species: Vec<&str> = SPECIES.iter().map(|(how, ..)| *how).collect();
-    let folder = zoo("", &species);
+    let folder = zoo_by("", &species, keys);
     let output = driftless(folder.path(), &["run", "zoo.toml", "--out", "out", "--jobs", "8"]);
     assert!(output.status.success(), "{}", said(&output));
     assert!(said(&output).contains("starts `python3 zoo.py behaves`"), "{}", said(&output));
@@ -203,7 +218,7 @@ const PROBLEMS: [(&str, &str); 11] = [
 ];
 
 /// A folder with the problems and an experiment on some of them.
-fn problems(kinds: &[&str], optimisers: &[&str]) -> tempfile::TempDir {
+fn problems(kinds: &[&str], optimisers: &[&str], keys: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("problems.py"), include_str!("problems.py")).unwrap();
     let mut experiment = "name = 'problems'\nseeds = 1\nbudget = { evaluations = 40 }\n".to_owned();
@@ -216,7 +231,7 @@ fn problems(kinds: &[&str], optimisers: &[&str]) -> tempfile::TempDir {
         let _ = write!(
             experiment,
             "[[problem]]\nlabel = '{how}'\nexternal = {{ command = ['python3', 'problems.py', '{how}'], \
-             timeout = {{ {patience} }} }}\n"
+             timeout = {{ {patience} }}{keys} }}\n"
         );
     }
     for optimiser in optimisers {
@@ -230,9 +245,16 @@ fn problems(kinds: &[&str], optimisers: &[&str]) -> tempfile::TempDir {
 #[cfg(target_os = "linux")]
 #[test]
 fn problems_fail_in_their_records_alone() {
+    for keys in ["", ", socket = true"] {
+        problems_fail_alone(keys);
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn problems_fail_alone(keys: &str) {
     let optimisers = ["random", "pso", "de", "l-shade", "nelder-mead", "cma-es"];
     let kinds: Vec<&str> = PROBLEMS.iter().map(|(how, _)| *how).collect();
-    let folder = problems(&kinds, &optimisers);
+    let folder = problems(&kinds, &optimisers, keys);
     let output = driftless(folder.path(), &["run", "problems.toml", "--out", "out", "--jobs", "4"]);
     assert!(output.status.success(), "{}", said(&output));
     assert_eq!(alive(folder.path()), Vec::<String>::new());
@@ -265,7 +287,7 @@ fn a_program_that_is_no_problem_is_refused() {
         ("tells-of-no-box", "expected the lower bound first"),
         ("tells-of-too-few-bounds", "told of 3 variables, 2 lower and 2 upper bounds"),
     ] {
-        let folder = problems(&[how], &["random"]);
+        let folder = problems(&[how], &["random"], "");
         let output = driftless(folder.path(), &["run", "problems.toml", "--out", "out"]);
         assert_eq!(output.status.code(), Some(2), "{how}: {}", said(&output));
         let said = said(&output).replace('│', " ");
@@ -371,23 +393,26 @@ fn solvers_to_start_from_work() {
         let output = command.args(args).current_dir(folder.path()).output();
         output.is_ok_and(|output| output.status.success())
     };
-    let mut commands = vec!["'python3', 'gaussian_search.py'"];
+    let mut commands = vec!["['python3', 'gaussian_search.py']"];
     if succeeds("python3", &["-c", "import numpy"]) {
-        commands.push("'python3', 'swarm.py'");
+        commands.push("['python3', 'swarm.py']");
     }
     let compiled = ["-O2", "-std=c++17", "-o", "gaussian_search", "gaussian_search.cpp"];
     if succeeds("c++", &["--version"]) {
         assert!(succeeds("c++", &compiled));
-        commands.push("'./gaussian_search'");
+        commands.push("['./gaussian_search']");
     }
     if succeeds("octave-cli", &["--version"]) {
-        commands.push("'octave-cli', '--quiet', 'gaussian_search.m'");
+        commands.push("['octave-cli', '--quiet', 'gaussian_search.m']");
+    }
+    if succeeds("octave-cli", &["--quiet", "--eval", "pkg load instrument-control"]) {
+        commands.push("['octave-cli', '--quiet', 'gaussian_search_socket.m'], socket = true");
     }
     let mut experiment = "name = 'solvers'\nseeds = 2\nbudget = { evaluations = 1000 }\n\
         [problem]\nexternal = { command = ['python3', 'problem.py'], settings = { dimension = 3 } }\n"
         .to_owned();
     for (i, command) in commands.iter().enumerate() {
-        let table = format!("label = '{i}'\nexternal = {{ command = [{command}] }}\n");
+        let table = format!("label = '{i}'\nexternal = {{ command = {command} }}\n");
         experiment += "[[optimiser]]\n";
         experiment += &table;
     }

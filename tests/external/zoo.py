@@ -3,11 +3,16 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
 
 how = sys.argv[1]
+if "DRIFTLESS_PORT" in os.environ:
+    peer = socket.create_connection(("127.0.0.1", int(os.environ["DRIFTLESS_PORT"])))
+    sys.stdin, sys.stdout = peer.makefile("r"), peer.makefile("w")
+    print(json.dumps({"token": os.environ["DRIFTLESS_TOKEN"]}), flush=True)
 opening = json.loads(sys.stdin.readline())
 budget = opening["budget"]
 assert opening["driftless"] == 1 and opening["role"] == "optimiser"
