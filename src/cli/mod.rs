@@ -38,6 +38,8 @@ mod serve;
 mod signals;
 #[cfg(feature = "harness")]
 mod status;
+#[cfg(feature = "harness")]
+mod trust;
 mod walls;
 #[cfg(feature = "harness")]
 mod warnings;

@@ -1,5 +1,6 @@
 //! `driftless run`.
 
+use std::collections::HashSet;
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
@@ -8,13 +9,13 @@ use clap::Args;
 use super::progress::Bar;
 use super::report::report;
 use super::results::start_all_threads;
+use super::trust::tell_programs;
 use super::warnings::warn_of_subjects;
 use super::{CliError, read_or, watch};
 use crate::experiment::{
     Damage, Experiment, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard,
-    ShardChoice, Store,
+    ShardChoice, Store, standing,
 };
-use crate::output::folder_of;
 use crate::registry::registry;
 use crate::report::Target;
 
@@ -43,7 +44,10 @@ pub(super) struct Run {
     /// Do again what is already stored
     #[arg(long)]
     fresh: bool,
-    /// Start the programs that a file of results names
+    /// Do again what is stored and has failed
+    #[arg(long)]
+    retry: bool,
+    /// Start the programs that a file of results names, now and later
     #[arg(long)]
     trust: bool,
     /// Say nothing of runs that end as they should
@@ -108,7 +112,7 @@ impl Run {
         if let Some(evaluations) = self.budget.and_then(NonZeroU64::new) {
             experiment = experiment.with_budget(evaluations);
         }
-        self.tell_programs(&experiment)?;
+        tell_programs(&experiment, self.file.as_deref(), self.trust)?;
         experiment.ask_programs()?;
         let plan = experiment.plan()?;
         warn_of_subjects(&plan);
@@ -146,42 +150,21 @@ impl Run {
         }
     }
 
-    /// Says which programs the experiment starts. Those that a file of results names may come from anybody, and are started only
-    /// where the user says so.
-    fn tell_programs(&self, experiment: &Experiment) -> Result<(), CliError> {
-        let mut told = Vec::new();
-        // A file need not say where it comes from.
-        let folder = self.file.as_deref().map(folder_of);
-        let mut is_from_results = folder.is_some_and(Folder::has_runs);
-        for (command, is_kept) in experiment.programs() {
-            is_from_results |= is_kept;
-            let program = format!("`{command}` in {}", command.folder().display());
-            if !told.contains(&program) {
-                told.push(program);
-            }
-        }
-        for program in &told {
-            note!("note: this experiment starts {program}");
-        }
-        if told.is_empty() || !is_from_results || self.trust {
-            return Ok(());
-        }
-        if confirmed("Start what these results name? [y/N] ") {
-            return Ok(());
-        }
-        Err(CliError::Usage {
-            message: "these programs are named by a file of results, which may come from anybody"
-                .to_owned(),
-            help: Some("look at them, and pass --trust to start them".to_owned()),
-        })
-    }
-
     fn run_missing(&self, folder: &Folder, shard: Option<Shard>) -> Result<(), CliError> {
         let (watch, mine, store) = (watch(), folder.runs(shard), &folder.store);
-        if self.fresh {
-            let own = mine.iter().filter(|run| folder.plan.obstacle(run).is_none());
-            let waiting = || note!("{WAITING}");
-            store.remove(&own.map(|run| run.key.as_str()).collect(), &waiting)?;
+        if self.fresh || self.retry {
+            let mut again: HashSet<&str> = mine.iter().map(|run| run.key.as_str()).collect();
+            if !self.fresh {
+                let failures = standing(&folder.plan, store)?.failures;
+                let failed = failures.iter().map(|run| folder.plan.runs[run.run].key.as_str());
+                let failed: HashSet<&str> = failed.collect();
+                again.retain(|key| failed.contains(key));
+            }
+            // What cannot be done again is kept.
+            for run in mine.iter().filter(|run| folder.plan.obstacle(run).is_some()) {
+                again.remove(run.key.as_str());
+            }
+            store.remove(&again, &|| note!("{WAITING}"))?;
         }
         let stored = store.keys()?;
         let missing = mine.iter().filter(|run| !stored.contains(&run.key));
@@ -199,7 +182,11 @@ impl Run {
         if watch.is_interrupted() {
             let stored = store.keys()?;
             let stored = mine.iter().filter(|run| stored.contains(&run.key)).count();
-            let without = if self.fresh { " without --fresh" } else { "" };
+            let without = match (self.fresh, self.retry) {
+                (true, _) => " without --fresh",
+                (false, true) => " without --retry",
+                (false, false) => "",
+            };
             return Err(CliError::Interrupted(format!(
                 "{stored} of {} runs are stored in {}; the same command{without} goes on from there",
                 mine.len(),
@@ -222,19 +209,6 @@ fn check_possible(plan: &Plan, path: &Path) -> Result<(), CliError> {
         Some([reason, ..]) => Err(RunError::foreign(reason).into()),
         _ => Ok(()),
     }
-}
-
-/// Asks the user, where there is one.
-fn confirmed(question: &str) -> bool {
-    use std::io::{IsTerminal as _, Write as _};
-    if !std::io::stdin().is_terminal() || !std::io::stderr().is_terminal() {
-        return false;
-    }
-    let mut line = String::new();
-    let mut errors = std::io::stderr();
-    let asked = errors.write_all(question.as_bytes()).and_then(|()| errors.flush());
-    asked.and_then(|()| std::io::stdin().read_line(&mut line)).is_ok()
-        && ["y", "yes"].contains(&line.trim().to_lowercase().as_str())
 }
 
 /// The shard that `--shard` means here.

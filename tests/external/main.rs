@@ -64,8 +64,9 @@ const SPECIES: [(&str, &str, u64, &str); 27] = [
 /// Runs `driftless` in a folder.
 fn driftless(folder: &Path, args: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_driftless"));
-    command.args(args).current_dir(folder).env("NO_COLOR", "1");
-    command.output().unwrap()
+    // What is trusted is remembered there.
+    command.args(args).current_dir(folder).env("XDG_STATE_HOME", folder.join("state"));
+    command.env("NO_COLOR", "1").output().unwrap()
 }
 
 fn said(output: &Output) -> String {
@@ -326,6 +327,29 @@ fn runs_of_solvers_that_change_meanwhile_fail() {
     assert!(message.contains("zoo.py is not what it was"), "{message}");
 }
 
+/// `--retry` does again what has failed, and nothing else.
+#[test]
+fn failed_runs_are_done_again() {
+    let folder = zoo("", &["behaves", "fails-once"]);
+    let run = |args: &[&str]| {
+        let output =
+            driftless(folder.path(), &[&["run", "zoo.toml", "--out", "out"], args].concat());
+        assert!(output.status.success(), "{}", said(&output));
+        said(&output)
+    };
+    let statuses = || {
+        let mut statuses = texts(&runs(&folder.path().join("out")), "status");
+        statuses.sort_unstable();
+        statuses
+    };
+    run(&[]);
+    assert_eq!(statuses(), ["failed", "finished"]);
+    assert!(run(&[]).contains("2 of 2 runs are stored already"));
+    assert!(run(&["--retry"]).contains("1 of 2 runs are stored already"));
+    assert_eq!(statuses(), ["finished", "finished"]);
+    assert!(run(&["--retry"]).contains("2 of 2 runs are stored already"));
+}
+
 /// A program that is not there is an error before anything is written, and no failed run.
 #[test]
 fn programs_that_are_not_there_are_refused() {
@@ -373,10 +397,19 @@ fn programs_of_results_are_started_where_they_are_trusted() {
         driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out", "--trust"]);
     assert!(trusted.status.success(), "{}", said(&trusted));
     assert_eq!(counts(&runs(&folder.path().join("out")), "evaluations"), [10]);
+    // Trusted once, it is not asked for again, until it is another program.
+    fs::remove_dir_all(folder.path().join("out/runs")).unwrap();
+    let again = driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out"]);
+    assert!(again.status.success(), "{}", said(&again));
+    let kept = fs::read_to_string(&file).unwrap();
+    fs::write(&file, kept.replace("\"behaves\"", "\"prints\"")).unwrap();
+    let other = driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out"]);
+    assert_eq!(other.status.code(), Some(2), "{}", said(&other));
+    fs::write(&file, kept).unwrap();
     // A file that is not what results were made with.
     fs::remove_dir_all(folder.path().join("out/runs")).unwrap();
     fs::write(folder.path().join("zoo.py"), "print('{\"hello\": {}}')").unwrap();
-    driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out", "--trust"]);
+    driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out"]);
     let messages = texts(&runs(&folder.path().join("out")), "message");
     assert!(messages[0].contains("zoo.py is not what it was"), "{}", messages[0]);
 }

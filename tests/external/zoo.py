@@ -44,6 +44,11 @@ if how == "says-no-hello":
 say({"hello": {"name": how}})
 if how == "behaves":
     ask_all(10)
+elif how == "fails-once":
+    ask_all(5)
+    if not os.path.exists("failed-once"):
+        open("failed-once", "w").close()
+        sys.exit(3)
 elif how == "takes-its-time":
     for i in range(10):
         time.sleep(0.03)
