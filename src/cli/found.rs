@@ -175,7 +175,8 @@ impl<F: SearchedFamily> Found<F> {
             let _ = writeln!(text, "  in comparison  {other}");
         }
         let Spent { evaluations, seconds, .. } = self.spent;
-        let _ = write!(text, "  {evaluations} evaluations in {seconds:.2} s");
+        let s = if evaluations == 1 { "" } else { "s" };
+        let _ = write!(text, "  {evaluations} evaluation{s} in {seconds:.2} s");
         text
     }
 
