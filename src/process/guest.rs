@@ -60,3 +60,9 @@ impl Guest {
         self.lines.last_words()
     }
 }
+
+impl Drop for Guest {
+    fn drop(&mut self) {
+        self.end();
+    }
+}

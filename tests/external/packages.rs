@@ -23,7 +23,7 @@ const PACKAGES: [(&str, &str, &str); 6] = [
     ("NGOpt", "use_nevergrad.py", "optimizer = 'NGOpt'"),
 ];
 
-/// Each script spends its budget to the last evaluation, and finds what its package can find.
+/// Each script spends its budget, or ends once its package has converged, and finds what its package can find.
 #[test]
 #[ignore = "needs minionpy, cma, SciPy and nevergrad: tests/external/run.sh"]
 fn scripts_of_other_packages_search() {
@@ -43,8 +43,14 @@ fn scripts_of_other_packages_search() {
     assert!(output.status.success(), "{}", said(&output));
     let runs = runs(&folder.path().join("out"));
     assert_eq!(texts(&runs, "message"), vec![""; 12]);
-    assert_eq!(texts(&runs, "status"), vec!["budget-spent"; 12]);
-    assert_eq!(counts(&runs, "evaluations"), vec![1500; 12]);
+    for (status, evaluations) in texts(&runs, "status").iter().zip(counts(&runs, "evaluations")) {
+        match &**status {
+            "budget-spent" => assert_eq!(evaluations, 1500),
+            status => {
+                assert!(status == "finished" && evaluations < 1500, "{status}: {evaluations}")
+            }
+        }
+    }
     let costs = runs.column("certified_j").unwrap().f64().unwrap().clone();
     for (label, cost) in texts(&runs, "optimiser").iter().zip(costs.iter()) {
         // A point drawn at random costs 35 in the mean.

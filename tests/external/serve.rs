@@ -37,7 +37,7 @@ fn spend(from: &mut impl BufRead, to: &mut impl Write) -> Value {
     let dimension = opening["problem"]["dimension"].as_u64().unwrap();
     assert_eq!(dimension, 12);
     say(to, &json!({ "hello": { "name": "mine" } }));
-    let point = |i: u64| (0..dimension).map(|k| 0.001 * (i * k) as f64).collect::<Vec<f64>>();
+    let point = |i: u64| (0..dimension).map(|k| 0.0004 * (i * k) as f64).collect::<Vec<f64>>();
     let batch: Vec<_> = (0..64).map(point).collect();
     say(to, &json!({ "id": "a", "x": batch }));
     let first = hear(from);
