@@ -191,7 +191,10 @@ impl From<crate::experiment::FolderError> for CliError {
             FolderError::NoResults(_) => {
                 Self::Usage { message: error.to_string(), help: Some(results::HELP.to_owned()) }
             }
-            FolderError::Another { .. } | FolderError::Unnamed { .. } | FolderError::Own(_) => {
+            FolderError::Another { .. }
+            | FolderError::Unnamed { .. }
+            | FolderError::Imported { .. }
+            | FolderError::Own(_) => {
                 Self::Usage {
                     message: error.to_string(),
                     help: Some("choose another folder with --out".to_owned()),

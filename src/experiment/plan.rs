@@ -1,6 +1,6 @@
 //! An experiment spelt out: every instance, every run, every key.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::num::NonZeroU64;
 
 use serde::Serialize;
@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::entrant::Entrant;
 use super::field::{Entry, labelled};
 use super::file::Experiment;
+use super::import_table::{ImportTable, ImportedRun};
 use super::run::Run;
 use super::schema::{FORMAT, runs};
 use super::subject::{Instance, Results};
@@ -80,7 +81,13 @@ impl Experiment {
         self.check_budgets()?;
         self.check_count(instances.len() as u64)?;
         let optimisers = labelled(&self.field, &instances);
-        let runs = runs(&instances, &optimisers, self.seeds, self.budget);
+        let runs = match &self.imported {
+            Some(imported) => {
+                let cells = imported.runs([instances.len(), optimisers.len()], document)?;
+                imported_runs(&instances, &optimisers, cells)
+            }
+            None => runs(&instances, &optimisers, self.seeds, self.budget),
+        };
         let mut keys = HashSet::new();
         if let Some(twin) = runs.iter().find(|run| !keys.insert(&run.key)) {
             let message = format!(
@@ -100,7 +107,8 @@ impl Experiment {
     fn check_count(&self, instances: u64) -> Result<(), InputError> {
         let seeds = |entry: &Entry| entry.entrant.seeds.unwrap_or(self.seeds).get();
         let seeds = self.field.iter().map(seeds).fold(0, u64::saturating_add);
-        let count = seeds.saturating_mul(instances);
+        let crossed = || seeds.saturating_mul(instances);
+        let count = self.imported.as_ref().map_or_else(crossed, ImportTable::count);
         if count <= MOST_RUNS {
             return Ok(());
         }
@@ -223,27 +231,73 @@ fn runs(
 ) -> Vec<RunSpec> {
     let mut runs = Vec::new();
     for (i, instance) in instances.iter().enumerate() {
-        let subject = problem_identity(instance);
         for (o, entrant) in optimisers.iter().enumerate() {
             let budget = entrant.budget.or(instance.budget).unwrap_or(budget).get();
-            let (optimiser, space) = (entrant.identity(), entrant.space(instance));
-            runs.extend((1..=entrant.seeds.unwrap_or(seeds).get()).map(|seed| {
-                let recipe = Recipe {
-                    format: FORMAT,
-                    version: RESULT_VERSION,
-                    subject: &subject,
-                    formulation: &space,
-                    optimiser: &optimiser,
-                    seed,
-                    evaluations: budget,
-                };
-                let recipe = serde_json::to_string(&recipe).unwrap_or_default();
-                let key = digest(&recipe);
-                RunSpec { key, recipe, instance: i, optimiser: o, seed, budget }
-            }));
+            let cell = Cell::new((i, instance), (o, entrant), budget);
+            let seeds = 1..=entrant.seeds.unwrap_or(seeds).get();
+            runs.extend(seeds.map(|seed| cell.run(seed)));
         }
     }
     runs
+}
+
+/// The runs that were imported.
+fn imported_runs(
+    instances: &[Instance],
+    optimisers: &[Entrant],
+    runs: BTreeMap<ImportedRun, NonZeroU64>,
+) -> Vec<RunSpec> {
+    let mut cell: Option<Cell> = None;
+    let spec = |((i, o, seed), budget): (ImportedRun, NonZeroU64)| {
+        let budget = budget.get();
+        let known = cell.take().filter(|cell| cell.is_of(i, o, budget));
+        let known = known.unwrap_or_else(|| Cell::new((i, &instances[i]), (o, &optimisers[o]), budget));
+        cell.insert(known).run(seed)
+    };
+    runs.into_iter().map(spec).collect()
+}
+
+/// All that the runs of an optimiser on an instance share.
+struct Cell {
+    instance: usize,
+    optimiser: usize,
+    subject: serde_json::Value,
+    formulation: String,
+    identity: serde_json::Value,
+    budget: u64,
+}
+
+impl Cell {
+    /// Of an instance and an optimiser, each with its place.
+    fn new(
+        (instance, on): (usize, &Instance),
+        (optimiser, entrant): (usize, &Entrant),
+        budget: u64,
+    ) -> Self {
+        let (subject, formulation) = (problem_identity(on), entrant.space(on));
+        Self { instance, optimiser, subject, formulation, identity: entrant.identity(), budget }
+    }
+
+    fn is_of(&self, instance: usize, optimiser: usize, budget: u64) -> bool {
+        (self.instance, self.optimiser, self.budget) == (instance, optimiser, budget)
+    }
+
+    /// One of the runs.
+    fn run(&self, seed: u64) -> RunSpec {
+        let recipe = Recipe {
+            format: FORMAT,
+            version: RESULT_VERSION,
+            subject: &self.subject,
+            formulation: &self.formulation,
+            optimiser: &self.identity,
+            seed,
+            evaluations: self.budget,
+        };
+        let recipe = serde_json::to_string(&recipe).unwrap_or_default();
+        let key = digest(&recipe);
+        let (instance, optimiser, budget) = (self.instance, self.optimiser, self.budget);
+        RunSpec { key, recipe, instance, optimiser, seed, budget }
+    }
 }
 
 /// Everything that determines a run's result.
@@ -288,6 +342,7 @@ impl Plan {
             source: None,
             instances: instances.clone(),
             field: entries.collect(),
+            imported: None,
             field_place: 0..0,
             document: Document::embedded(name, ""),
         };
