@@ -21,6 +21,8 @@ mod compact;
 #[cfg(feature = "harness")]
 mod export;
 mod found;
+#[cfg(feature = "harness")]
+mod import;
 mod list;
 mod motion;
 mod plan;
@@ -85,6 +87,9 @@ enum Verb {
     /// Write an experiment's runs as other benchmarking tools read them, or its best motions
     #[cfg(feature = "harness")]
     Export(export::Export),
+    /// Make a folder of results of other programs' runs, to be reported beside others
+    #[cfg(feature = "harness")]
+    Import(import::Import),
     /// Find the best motion for one task
     Plan(plan::Plan),
     /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
@@ -164,6 +169,10 @@ enum CliError {
     #[cfg(feature = "harness")]
     #[error(transparent)]
     Suite(#[from] crate::export::SuiteError),
+    /// Data of other programs could not be imported.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    Import(#[from] crate::import::ImportError),
     /// A report could not be made.
     #[cfg(feature = "harness")]
     #[error(transparent)]
@@ -194,12 +203,10 @@ impl From<crate::experiment::FolderError> for CliError {
             FolderError::Another { .. }
             | FolderError::Unnamed { .. }
             | FolderError::Imported { .. }
-            | FolderError::Own(_) => {
-                Self::Usage {
-                    message: error.to_string(),
-                    help: Some("choose another folder with --out".to_owned()),
-                }
-            }
+            | FolderError::Own(_) => Self::Usage {
+                message: error.to_string(),
+                help: Some("choose another folder with --out".to_owned()),
+            },
             FolderError::Written(message) => Self::Resolved(message),
         }
     }
@@ -243,7 +250,9 @@ impl CliError {
         match self {
             Self::Unreadable { .. } | Self::Input { .. } | Self::Usage { .. } => ExitCode::from(2),
             #[cfg(feature = "harness")]
-            Self::Shard { .. } => ExitCode::from(2),
+            Self::Shard { .. } | Self::Import(crate::import::ImportError::Content { .. }) => {
+                ExitCode::from(2)
+            }
             Self::Required(_) => ExitCode::from(3),
             _ => ExitCode::from(1),
         }
@@ -269,6 +278,8 @@ pub fn main() -> ExitCode {
         Verb::Compact(compact) => compact.execute(),
         #[cfg(feature = "harness")]
         Verb::Export(export) => export.execute(),
+        #[cfg(feature = "harness")]
+        Verb::Import(import) => import.execute(),
         Verb::Plan(plan) => plan.execute(),
         Verb::Replay(replay) => replay.execute(),
         Verb::List(list) => list.execute(),

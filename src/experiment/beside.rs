@@ -55,8 +55,10 @@ impl All {
         let called = |place: &usize| first[place].1;
         let labels = ambiguous(first.iter().map(|(place, (_, i))| (i.label.as_str(), place)));
         let groups = ambiguous_groups(&places, called, &labels);
-        all.instances =
-            first.values().map(|(name, instance)| named(instance, name, &labels, &groups)).collect();
+        all.instances = first
+            .values()
+            .map(|(name, instance)| named(instance, name, &labels, &groups))
+            .collect();
         let names = ambiguous(plans.iter().flat_map(|(_, plan)| {
             let own = plan.optimisers.iter();
             own.map(|o| (o.label.as_str(), entrant_id(o, plan)))

@@ -24,8 +24,7 @@ use crate::process::Command;
 const DEFAULTS: &str = include_str!("defaults.toml");
 
 /// The keys of a file that are the same for all kinds of subjects.
-const KEYS: [&str; 7] =
-    ["name", "seeds", "budget", "targets", "imported", "problem", "optimiser"];
+const KEYS: [&str; 7] = ["name", "seeds", "budget", "targets", "imported", "problem", "optimiser"];
 
 /// An experiment: every optimiser on every instance, for every seed.
 #[derive(Debug, Clone)]

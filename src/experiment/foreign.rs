@@ -48,7 +48,7 @@ pub struct ForeignProblem {
 }
 
 /// An optimiser of another program.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ForeignOptimiser {
     /// Its name.
     pub name: String,
@@ -111,7 +111,8 @@ impl Foreign {
     pub(super) fn in_order_of<'a>(&'a self, plan: &Plan) -> Vec<&'a ForeignRun> {
         let place = |run: &ForeignRun| (run.problem, run.optimiser, run.seed);
         let by_place: BTreeMap<_, _> = self.runs.iter().map(|run| (place(run), run)).collect();
-        let of = |spec: &RunSpec| by_place.get(&(spec.instance, spec.optimiser, spec.seed)).copied();
+        let of =
+            |spec: &RunSpec| by_place.get(&(spec.instance, spec.optimiser, spec.seed)).copied();
         plan.runs.iter().filter_map(of).collect()
     }
 
@@ -189,7 +190,12 @@ impl ForeignProblem {
     fn table(&self, start_cost: f64) -> ProblemTable {
         let optimum = self.optimum.filter(|optimum| optimum.is_finite());
         let targets = optimum.map(|optimum| TARGETS.map(|target| optimum + target));
-        ProblemTable::imported(&self.origin, optimum, start_cost, targets.as_ref().map_or(&[], |t| t))
+        ProblemTable::imported(
+            &self.origin,
+            optimum,
+            start_cost,
+            targets.as_ref().map_or(&[], |t| t),
+        )
     }
 }
 

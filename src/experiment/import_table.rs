@@ -98,9 +98,8 @@ impl ImportTable {
                 let message = format!("found {what} {found}, expected one from 1 to {count}");
                 document.error_at(table.span(), message, None)
             };
-            let place = |number: usize, count: usize| {
-                number.checked_sub(1).filter(|place| *place < count)
-            };
+            let place =
+                |number: usize, count: usize| number.checked_sub(1).filter(|place| *place < count);
             let o = place(*optimiser, optimisers)
                 .ok_or_else(|| error("optimiser", *optimiser, optimisers))?;
             for problem in problems {

@@ -251,7 +251,8 @@ fn imported_runs(
     let spec = |((i, o, seed), budget): (ImportedRun, NonZeroU64)| {
         let budget = budget.get();
         let known = cell.take().filter(|cell| cell.is_of(i, o, budget));
-        let known = known.unwrap_or_else(|| Cell::new((i, &instances[i]), (o, &optimisers[o]), budget));
+        let known =
+            known.unwrap_or_else(|| Cell::new((i, &instances[i]), (o, &optimisers[o]), budget));
         cell.insert(known).run(seed)
     };
     runs.into_iter().map(spec).collect()
@@ -359,6 +360,11 @@ impl Plan {
             Ok(_) if !instance.subject.is_foreign() => None,
             Ok(_) => instance.subject.problem(&entrant.space(instance)).err(),
         }
+    }
+
+    /// Of imported results: what they come from, in words.
+    pub fn imported(&self) -> Option<String> {
+        self.experiment.imported()
     }
 
     /// Whether some optimisers may spend more than others on the same instance.

@@ -18,10 +18,10 @@ type ExportedId = (u32, u32, u64);
 /// Places of instances among all of several plans.
 #[derive(Default)]
 struct Known<'a> {
-    by_id: HashMap<InstanceId, usize>,
+    ids: HashMap<InstanceId, usize>,
     /// With the names of their functions.
-    by_export: HashMap<ExportedId, Vec<(String, usize)>>,
-    by_label: HashMap<&'a str, Vec<usize>>,
+    exported: HashMap<ExportedId, Vec<(String, usize)>>,
+    labels: HashMap<&'a str, Vec<usize>>,
 }
 
 /// The place of every instance of every plan among all that they have together, in the order of these. Those with the same
@@ -39,13 +39,14 @@ pub(super) fn places(plans: &[(&str, &Plan)]) -> Vec<Vec<usize>> {
             let is_own = |instance: &Instance| origin(instance).is_none();
             let has_own = turn == 0 && plan.instances.iter().any(is_own);
             let numbering = plan.numbering().ok().filter(|_| needs_numbers && has_own);
-            for (i, instance) in plan.instances.iter().enumerate().filter(|(_, i)| turn_of(i) == turn)
+            for (i, instance) in
+                plan.instances.iter().enumerate().filter(|(_, i)| turn_of(i) == turn)
             {
                 places[i] = known.place(instance);
-                if let Some(numbered) = numbering.as_ref().map(|numbering| &numbering.instances[i]) {
-                    let id =
-                        (numbered.function, numbered.instance, u64::from(numbered.dimension));
-                    let same = known.by_export.entry(id).or_default();
+                if let Some(numbered) = numbering.as_ref().map(|numbering| &numbering.instances[i])
+                {
+                    let id = (numbered.function, numbered.instance, u64::from(numbered.dimension));
+                    let same = known.exported.entry(id).or_default();
                     if same.iter().all(|(_, place)| *place != places[i]) {
                         same.push((numbered.name.clone(), places[i]));
                     }
@@ -72,12 +73,12 @@ impl<'a> Known<'a> {
             None => self.labelled(&instance.label),
         });
         let id = (problem_identity(instance).to_string(), instance.budget);
-        let next = self.by_id.len();
+        let next = self.ids.len();
         let place = match found {
             Some(place) => place,
-            None => *self.by_id.entry(id).or_insert(next),
+            None => *self.ids.entry(id).or_insert(next),
         };
-        let same = self.by_label.entry(&instance.label).or_default();
+        let same = self.labels.entry(&instance.label).or_default();
         if turn_of(instance) < 2 && !same.contains(&place) {
             same.push(place);
         }
@@ -87,7 +88,7 @@ impl<'a> Known<'a> {
     /// The only instance that an export calls like this.
     fn exported(&self, origin: &Origin) -> Option<usize> {
         let function = origin.function.filter(|_| origin.is_exported())?;
-        let same = self.by_export.get(&(function, origin.instance?, origin.dimension?))?;
+        let same = self.exported.get(&(function, origin.instance?, origin.dimension?))?;
         let is_named = |name: &str| origin.name.is_empty() || origin.name == name;
         let mut named = same.iter().filter(|(name, _)| is_named(name)).map(|(_, place)| *place);
         named.next().filter(|_| named.next().is_none())
@@ -95,7 +96,7 @@ impl<'a> Known<'a> {
 
     /// The only instance with this label.
     fn labelled(&self, label: &str) -> Option<usize> {
-        match self.by_label.get(label).map(Vec::as_slice) {
+        match self.labels.get(label).map(Vec::as_slice) {
             Some([place]) => Some(*place),
             _ => None,
         }

@@ -134,13 +134,11 @@ impl ProblemTable {
             let message = format!("found no JSON, expected the problem's identity: {error}");
             document.error_at(self.identity.span(), message, None)
         })?;
-        let origin = match self.kind == IMPORTED {
-            true => Some(identity.parse().map_err(|error: String| {
-                let message = format!("found no origin of an imported problem: {error}");
-                document.error_at(self.identity.span(), message, None)
-            })?),
-            false => None,
-        };
+        let is_imported = self.kind == IMPORTED;
+        let origin = is_imported.then(|| identity.parse()).transpose().map_err(|error| {
+            let message = format!("found no origin of an imported problem: {error}");
+            document.error_at(self.identity.span(), message, None)
+        })?;
         let group = self.group.clone().unwrap_or_else(|| self.label.clone());
         let title = self.title.clone().unwrap_or_else(|| group.clone());
         let series = self.series.clone().unwrap_or_else(|| self.label.clone());

@@ -83,6 +83,8 @@ pub struct ExportedRun {
     pub instance: usize,
     /// Seed.
     pub seed: u64,
+    /// Evaluations allowed.
+    pub budget: u64,
     /// Evaluation and best cost so far: the first evaluation, improvements, the last one. The cost is
     /// infinite until one is finite, and to the end for a run that found nothing. A run that failed
     /// before its first evaluation has one here, since the formats begin there.
@@ -115,7 +117,8 @@ impl Suite {
         let (functions, places) = functions(plan, &numbering, &least_found(plan, runs));
         let trial = |(run, trace): (&Run, Trace)| {
             let (function, instance) = places[run.instance];
-            ExportedRun { algorithm: run.optimiser, function, instance, seed: run.seed, trace }
+            let (algorithm, seed, budget) = (run.optimiser, run.seed, run.budget);
+            ExportedRun { algorithm, function, instance, seed, budget, trace }
         };
         Ok(Self {
             name: plan.name.clone(),
@@ -185,15 +188,12 @@ fn algorithms(plan: &Plan) -> Vec<Algorithm> {
 type Place = (usize, usize);
 
 /// The functions, and where each instance of the plan is among them.
-fn functions(
-    plan: &Plan,
-    numbering: &Numbering,
-    least: &[f64],
-) -> (Vec<Function>, Vec<Place>) {
+fn functions(plan: &Plan, numbering: &Numbering, least: &[f64]) -> (Vec<Function>, Vec<Place>) {
     let mut functions: Vec<Function> = Vec::new();
     let mut places = Vec::new();
     let mut by_number: HashMap<u32, usize> = HashMap::new();
-    for ((instance, numbered), least) in plan.instances.iter().zip(&numbering.instances).zip(least) {
+    for ((instance, numbered), least) in plan.instances.iter().zip(&numbering.instances).zip(least)
+    {
         let place = *by_number.entry(numbered.function).or_insert_with(|| {
             let (number, name) = (numbered.function, numbered.name.clone());
             let (groups, instances) = (Vec::new(), Vec::new());

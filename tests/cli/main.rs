@@ -7,6 +7,8 @@ mod experiments;
 mod export;
 mod folder;
 #[cfg(feature = "harness")]
+mod import;
+#[cfg(feature = "harness")]
 mod processes;
 #[cfg(feature = "harness")]
 mod reports;
