@@ -26,9 +26,9 @@ pub(super) struct Import {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Format {
-    /// `IOHprofiler`'s: an index per function, `IOHprofiler_f1_Sphere.json`, and the tables beside
+    /// IOHprofiler's: an index in JSON per function, and the tables beside
     Ioh,
-    /// COCO's: an index per function, `bbobexp_f1.info`, and the tables beside
+    /// COCO's: an index .info per function, and the tables beside
     Coco,
     /// A long table: problem, optimiser, seed, evaluation, cost
     Csv,

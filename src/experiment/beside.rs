@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::num::NonZeroU64;
 
 use super::entrant::Entrant;
-use super::plan::{Plan, RunSpec};
+use super::plan::Plan;
 use super::same::places;
+use super::specs::RunSpec;
 use super::stored::origin;
 use super::subject::Instance;
 
@@ -14,9 +15,9 @@ type EntrantId = (String, Option<String>, NonZeroU64);
 
 impl Plan {
     /// One plan with all that these plans have, each with a name that tells it from the others, such as that of its folder.
-    /// Instances with the same problem are one, also where results were imported, and so are optimisers with the same settings and budget, whatever they are
-    /// called; what has one label in two plans and is not the same has the plan's name behind it. A run that several plans
-    /// have stands once.
+    /// Instances with the same problem are one, also where results were imported, and so are optimisers with the same settings
+    /// and budget, whatever they are called; what has one label in two plans and is not the same has the plan's name behind it.
+    /// A run that several plans have stands once.
     ///
     /// None for no plans.
     pub fn beside(plans: &[(&str, &Plan)]) -> Option<Plan> {

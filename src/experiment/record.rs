@@ -7,8 +7,9 @@ use chrono::{DateTime, Utc};
 use polars::prelude::*;
 
 use super::foreign::{ForeignRun, ForeignStep};
-use super::plan::{Plan, RunSpec};
+use super::plan::Plan;
 use super::schema::{FORMAT, clocks, runs, traces};
+use super::specs::RunSpec;
 use super::value::{Judgement, Quantity, Value, ValueKind};
 use crate::search::{Oracle, Stop, TracePoint};
 

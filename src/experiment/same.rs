@@ -4,7 +4,8 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 
 use super::origin::Origin;
-use super::plan::{Plan, problem_identity};
+use super::plan::Plan;
+use super::specs::problem_identity;
 use super::stored::origin;
 use super::subject::Instance;
 
@@ -36,9 +37,8 @@ pub(super) fn places(plans: &[(&str, &Plan)]) -> Vec<Vec<usize>> {
     let needs_numbers = plans.iter().any(|(_, plan)| plan.instances.iter().any(is_exported));
     for turn in 0..3 {
         for ((_, plan), places) in plans.iter().zip(&mut places) {
-            let is_own = |instance: &Instance| origin(instance).is_none();
-            let has_own = turn == 0 && plan.instances.iter().any(is_own);
-            let numbering = plan.numbering().ok().filter(|_| needs_numbers && has_own);
+            let is_numbered = turn == 0 && needs_numbers && plan.imported().is_none();
+            let numbering = if is_numbered { plan.numbering().ok() } else { None };
             for (i, instance) in
                 plan.instances.iter().enumerate().filter(|(_, i)| turn_of(i) == turn)
             {

@@ -11,8 +11,8 @@ const DEEPEST: usize = 16;
 /// Most files that are looked at.
 const MOST_FILES: usize = 1_000_000;
 
-/// The files of a folder and of those in it whose names begin and end like that, sorted; or the file itself. Links to folders are not followed. None
-/// is an error, which says what was expected.
+/// The files of a folder and of those in it whose names begin and end like that, sorted; or the file itself. Links to folders
+/// are not followed. None is an error, which says what was expected.
 pub(super) fn files(
     data: &Path,
     [prefix, extension]: [&str; 2],

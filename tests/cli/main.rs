@@ -9,6 +9,8 @@ mod folder;
 #[cfg(feature = "harness")]
 mod import;
 #[cfg(feature = "harness")]
+mod import_mistakes;
+#[cfg(feature = "harness")]
 mod processes;
 #[cfg(feature = "harness")]
 mod reports;

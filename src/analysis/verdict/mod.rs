@@ -57,7 +57,7 @@ fn imported(analysis: &Analysis<'_>) -> Option<Finding> {
     let told: Vec<String> = sources.iter().map(told).collect();
     let answer = format!(
         "Imported {}. Of these runs only the best costs by evaluations are known, as their own programs evaluated them: no \
-         points, limits or times.",
+         points and no limits.",
         told.join("; ")
     );
     (!told.is_empty()).then(|| Finding::new("Is anything imported?", answer))

@@ -39,8 +39,9 @@ use self::seal::sealed;
 use self::stack::Stack;
 use super::caught::caught;
 use super::foreign::{Foreign, ForeignRun};
-use super::plan::{Plan, RunSpec};
+use super::plan::Plan;
 use super::record::Record;
+use super::specs::RunSpec;
 use crate::output::{FileError, create_folder, write_file};
 
 /// The tables, in the order in which a batch's are written.
