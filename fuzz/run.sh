@@ -11,7 +11,7 @@ cd "$(dirname "$0")"
 seconds=${1:-120}
 shift || true
 targets=("$@")
-[ $# -gt 0 ] || targets=(robot task replay experiment stored integrator)
+[ $# -gt 0 ] || targets=(robot task replay experiment stored import integrator)
 if ! command -v c++ > /dev/null; then
     echo "fuzzing is skipped: there is no C++ compiler"
     exit 0

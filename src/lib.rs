@@ -65,6 +65,8 @@ pub mod exhibit;
 #[cfg(feature = "harness")]
 pub mod experiment;
 pub mod functions;
+#[cfg(feature = "harness")]
+pub mod import;
 pub mod input;
 pub mod optimiser;
 #[cfg(feature = "harness")]

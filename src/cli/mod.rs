@@ -22,6 +22,8 @@ mod compact;
 mod export;
 mod family;
 mod found;
+#[cfg(feature = "harness")]
+mod import;
 mod list;
 mod motion;
 mod plan;
@@ -90,6 +92,9 @@ enum Verb {
     /// Write an experiment's runs as other benchmarking tools read them, or its best motions
     #[cfg(feature = "harness")]
     Export(export::Export),
+    /// Make a folder of results of other programs' runs, to be reported beside others
+    #[cfg(feature = "harness")]
+    Import(import::Import),
     /// Find the best motion for one task
     Plan(plan::Plan),
     /// Offer a task to an optimiser of yours, which asks for costs
@@ -175,6 +180,10 @@ enum CliError {
     #[cfg(feature = "harness")]
     #[error(transparent)]
     Suite(#[from] crate::export::SuiteError),
+    /// Data of other programs could not be imported.
+    #[cfg(feature = "harness")]
+    #[error(transparent)]
+    Import(#[from] crate::import::ImportError),
     /// A report could not be made.
     #[cfg(feature = "harness")]
     #[error(transparent)]
@@ -202,12 +211,13 @@ impl From<crate::experiment::FolderError> for CliError {
             FolderError::NoResults(_) => {
                 Self::Usage { message: error.to_string(), help: Some(results::HELP.to_owned()) }
             }
-            FolderError::Another { .. } | FolderError::Unnamed { .. } | FolderError::Own(_) => {
-                Self::Usage {
-                    message: error.to_string(),
-                    help: Some("choose another folder with --out".to_owned()),
-                }
-            }
+            FolderError::Another { .. }
+            | FolderError::Unnamed { .. }
+            | FolderError::Imported { .. }
+            | FolderError::Own(_) => Self::Usage {
+                message: error.to_string(),
+                help: Some("choose another folder with --out".to_owned()),
+            },
             FolderError::Written(message) => Self::Resolved(message),
         }
     }
@@ -251,7 +261,9 @@ impl CliError {
         match self {
             Self::Unreadable { .. } | Self::Input { .. } | Self::Usage { .. } => ExitCode::from(2),
             #[cfg(feature = "harness")]
-            Self::Shard { .. } => ExitCode::from(2),
+            Self::Shard { .. } | Self::Import(crate::import::ImportError::Content { .. }) => {
+                ExitCode::from(2)
+            }
             Self::Required(_) => ExitCode::from(3),
             _ => ExitCode::from(1),
         }
@@ -277,6 +289,8 @@ pub fn main() -> ExitCode {
         Verb::Compact(compact) => compact.execute(),
         #[cfg(feature = "harness")]
         Verb::Export(export) => export.execute(),
+        #[cfg(feature = "harness")]
+        Verb::Import(import) => import.execute(),
         Verb::Plan(plan) => plan.execute(),
         #[cfg(feature = "harness")]
         Verb::Serve(serve) => serve.execute(),

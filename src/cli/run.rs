@@ -106,6 +106,11 @@ impl Run {
         let (document, registry) =
             (read_or(self.file.as_deref(), Experiment::embedded)?, registry());
         let mut experiment = Experiment::read(&document, &registry)?;
+        if let Some(from) = experiment.imported() {
+            let message = format!("these results were imported, from {from}, and cannot be run");
+            let help = Some("`driftless report` reports them, also beside others".to_owned());
+            return Err(CliError::Usage { message, help });
+        }
         if let Some(seeds) = self.seeds.and_then(NonZeroU64::new) {
             experiment = experiment.with_seeds(seeds);
         }

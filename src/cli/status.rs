@@ -49,6 +49,9 @@ struct StatusJson<'a> {
     /// Stored runs in another format than this version reads.
     unread: usize,
     batches: usize,
+    /// Of imported results: what from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    imported: Option<String>,
     optimisers: Vec<EntrantJson<'a>>,
     failures: Vec<FailureJson<'a>>,
     /// Files that cannot be used, one per batch.
@@ -126,6 +129,7 @@ fn json<'a>(results: &'a Folder, standing: &'a Standing, batches: usize) -> Stat
         others: standing.others,
         unread: standing.formats.values().sum(),
         batches,
+        imported: plan.imported(),
         optimisers: standing.tallies.iter().enumerate().map(entrant).collect(),
         failures: standing.failures.iter().map(failure).collect(),
         damaged: results.store.damaged().into_iter().map(DamageJson::from).collect(),
@@ -146,6 +150,9 @@ fn tell(results: &Folder, standing: &Standing, batches: usize) -> Result<(), Cli
     )?;
     warn_of_damage(&results.store);
     say!("{}", render(&table)?);
+    if let Some(from) = plan.imported() {
+        say!("imported from {from}: runs of other programs, which can be reported and not be run");
+    }
     say!(
         "{}: {} of {} runs are stored, {} failed, {} missing; {} per table",
         plan.name,
@@ -172,7 +179,7 @@ fn tell(results: &Folder, standing: &Standing, batches: usize) -> Result<(), Cli
     if let Some(others) = standing.others() {
         say!("{others}");
     }
-    if all.missing() > 0 {
+    if all.missing() > 0 && plan.imported().is_none() {
         say!("what is missing: {}", command(results));
     }
     Ok(())

@@ -1,23 +1,23 @@
 //! Experiments side by side, as if they were one.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::num::NonZeroU64;
 
 use super::entrant::Entrant;
-use super::plan::{Plan, RunSpec, problem_identity};
+use super::plan::Plan;
+use super::same::places;
+use super::specs::RunSpec;
+use super::stored::origin;
 use super::subject::Instance;
-
-/// What tells an instance from those of other experiments: its problem, and its budget where it has one of its own.
-type InstanceId = (String, Option<NonZeroU64>);
 
 /// What tells an optimiser from those of other experiments: settings, formulation and what its runs may spend.
 type EntrantId = (String, Option<String>, NonZeroU64);
 
 impl Plan {
     /// One plan with all that these plans have, each with a name that tells it from the others, such as that of its folder.
-    /// Instances with the same problem are one, and so are optimisers with the same settings and budget, whatever they are
-    /// called; what has one label in two plans and is not the same has the plan's name behind it. A run that several plans
-    /// have stands once.
+    /// Instances with the same problem are one, also where results were imported, and so are optimisers with the same settings
+    /// and budget, whatever they are called; what has one label in two plans and is not the same has the plan's name behind it.
+    /// A run that several plans have stands once.
     ///
     /// None for no plans.
     pub fn beside(plans: &[(&str, &Plan)]) -> Option<Plan> {
@@ -26,6 +26,7 @@ impl Plan {
         let name: Vec<&str> = plans.iter().map(|(name, _)| *name).collect();
         let mut experiment = first.experiment.clone();
         experiment.name = name.join(", ");
+        experiment.imported = None;
         Some(experiment.spelt_out(all.instances, all.optimisers, all.runs))
     }
 }
@@ -40,28 +41,31 @@ struct All {
 impl All {
     fn of(plans: &[(&str, &Plan)]) -> Self {
         let mut all = Self::default();
-        let (mut instances, mut optimisers) = (HashMap::new(), HashMap::new());
-        let labels = ambiguous(plans, |plan| {
-            let own = plan.instances.iter();
-            own.map(|i| (i.label.clone(), format!("{:?}", instance_id(i)))).collect()
-        });
-        let groups = ambiguous_groups(plans, &labels);
-        let names = ambiguous(plans, |plan| {
+        let mut optimisers = HashMap::new();
+        let places = places(plans);
+        // What an instance is called follows from the first plan that has it; those that can be run stand before imported ones.
+        let mut first: BTreeMap<usize, (&str, &Instance)> = BTreeMap::new();
+        for ((name, plan), places) in plans.iter().zip(&places) {
+            for (instance, place) in plan.instances.iter().zip(places) {
+                let known = first.entry(*place).or_insert((*name, instance));
+                if origin(known.1).is_some() && origin(instance).is_none() {
+                    *known = (*name, instance);
+                }
+            }
+        }
+        let called = |place: &usize| first[place].1;
+        let labels = ambiguous(first.iter().map(|(place, (_, i))| (i.label.as_str(), place)));
+        let groups = ambiguous_groups(&places, called, &labels);
+        all.instances = first
+            .values()
+            .map(|(name, instance)| named(instance, name, &labels, &groups))
+            .collect();
+        let names = ambiguous(plans.iter().flat_map(|(_, plan)| {
             let own = plan.optimisers.iter();
-            own.map(|o| (o.label.clone(), format!("{:?}", entrant_id(o, plan)))).collect()
-        });
+            own.map(|o| (o.label.as_str(), entrant_id(o, plan)))
+        }));
         let mut keys = HashSet::new();
-        for (name, plan) in plans {
-            let own: Vec<usize> = plan
-                .instances
-                .iter()
-                .map(|instance| {
-                    *instances.entry(instance_id(instance)).or_insert_with(|| {
-                        all.instances.push(named(instance, name, &labels, &groups));
-                        all.instances.len() - 1
-                    })
-                })
-                .collect();
+        for ((name, plan), own) in plans.iter().zip(&places) {
             let field: Vec<usize> = plan
                 .optimisers
                 .iter()
@@ -89,44 +93,45 @@ impl All {
     }
 }
 
-fn instance_id(instance: &Instance) -> InstanceId {
-    (problem_identity(instance).to_string(), instance.budget)
-}
-
 fn entrant_id(entrant: &Entrant, plan: &Plan) -> EntrantId {
-    let budget = entrant.budget.unwrap_or(plan.experiment.budget);
+    // What imported runs may spend is part of their data, and these of the optimiser's settings.
+    let own = || entrant.budget.unwrap_or(plan.experiment.budget);
+    let budget = if entrant.imported().is_some() { NonZeroU64::MIN } else { own() };
     (entrant.identity().to_string(), entrant.formulation.clone(), budget)
 }
 
-/// The labels that stand for different things in different plans.
-fn ambiguous(
-    plans: &[(&str, &Plan)],
-    labelled: impl Fn(&Plan) -> Vec<(String, String)>,
-) -> HashSet<String> {
-    let mut meanings: HashMap<String, BTreeSet<String>> = HashMap::new();
-    for (label, meaning) in plans.iter().flat_map(|(_, plan)| labelled(plan)) {
+/// The labels that stand for different things.
+fn ambiguous<'a, T: Ord>(labelled: impl Iterator<Item = (&'a str, T)>) -> HashSet<String> {
+    let mut meanings: HashMap<&str, BTreeSet<T>> = HashMap::new();
+    for (label, meaning) in labelled {
         meanings.entry(label).or_default().insert(meaning);
     }
     let several = meanings.into_iter().filter(|(_, meanings)| meanings.len() > 1);
-    several.map(|(label, _)| label).collect()
+    several.map(|(label, _)| label.to_owned()).collect()
 }
 
 /// The groups that are not the same in all plans that have them: some label there stands for different things, or the plans
-/// share none of their instances and the group's name does not say what they are.
-fn ambiguous_groups(plans: &[(&str, &Plan)], labels: &HashSet<String>) -> HashSet<String> {
-    let mut groups: HashMap<&str, Vec<HashSet<InstanceId>>> = HashMap::new();
+/// share none of their instances and the group's name does not say what they are. `places` are those of each plan's instances,
+/// and `called` gives an instance by its place.
+fn ambiguous_groups<'a>(
+    places: &[Vec<usize>],
+    called: impl Fn(&usize) -> &'a Instance,
+    labels: &HashSet<String>,
+) -> HashSet<String> {
+    let mut groups: HashMap<&str, Vec<HashSet<usize>>> = HashMap::new();
     let mut found = HashSet::new();
-    for (_, plan) in plans {
-        let mut own: HashMap<&str, HashSet<InstanceId>> = HashMap::new();
-        for instance in &plan.instances {
-            own.entry(&instance.group).or_default().insert(instance_id(instance));
+    for places in places {
+        let mut own: HashMap<&str, HashSet<usize>> = HashMap::new();
+        for place in places {
+            let instance = called(place);
+            own.entry(&instance.group).or_default().insert(*place);
             if labels.contains(&instance.label) {
                 found.insert(instance.group.clone());
             }
         }
         for (group, ids) in own {
-            let name = plan.instances.iter().find(|instance| instance.group == group);
-            let says = name.is_some_and(|instance| group.starts_with(instance.subject.name()));
+            let mut instances = ids.iter().map(&called);
+            let says = instances.all(|instance| group.starts_with(instance.subject.name()));
             let others = groups.entry(group).or_default();
             if !says && !others.is_empty() && others.iter().all(|other| other.is_disjoint(&ids)) {
                 found.insert(group.to_owned());

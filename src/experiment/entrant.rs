@@ -41,6 +41,8 @@ pub struct Entrant {
     pub(super) optimiser: Option<Arc<dyn Optimiser>>,
     pub(super) origin: Origin,
     pub(super) is_labelled: bool,
+    /// Of an optimiser whose runs were imported: what from, in words.
+    pub(super) imported: Option<Arc<str>>,
 }
 
 /// Where an entrant comes from.
@@ -110,6 +112,7 @@ impl From<Settings> for Entrant {
             optimiser: Some(Arc::new(Catalogued(settings.clone()))),
             origin: Origin::Catalogue(settings),
             is_labelled: false,
+            imported: None,
         }
     }
 }
@@ -148,6 +151,25 @@ impl Entrant {
             optimiser: Some(Arc::new(optimiser)),
             origin,
             is_labelled: false,
+            imported: None,
+        }
+    }
+
+    /// An optimiser of another program, which can be reported and not be run.
+    pub(super) fn outside(name: String, settings: Identity) -> Self {
+        Self {
+            label: name.clone(),
+            kind: name,
+            search: None,
+            settings,
+            formulation: None,
+            needs_derivatives: false,
+            seeds: None,
+            budget: None,
+            optimiser: None,
+            origin: Origin::Outside,
+            is_labelled: false,
+            imported: None,
         }
     }
 
@@ -160,6 +182,11 @@ impl Entrant {
     /// The optimiser's name: what it is a kind of.
     pub fn kind(&self) -> &str {
         &self.kind
+    }
+
+    /// Of an optimiser whose runs were imported: what from, in words. Little is known of such runs beside their traces.
+    pub fn imported(&self) -> Option<&str> {
+        self.imported.as_deref()
     }
 
     /// Whether it can search only problems with derivatives.
@@ -177,10 +204,13 @@ impl Entrant {
     /// The optimiser itself.
     pub fn optimiser(&self) -> Result<&dyn Optimiser, Failure> {
         self.optimiser.as_deref().ok_or_else(|| {
-            Failure::new(format!(
-                "the optimiser `{}` belongs to the program that made these results",
-                self.kind
-            ))
+            Failure::new(match &self.imported {
+                Some(from) => format!("the runs of `{}` were imported, from {from}", self.label),
+                None => format!(
+                    "the optimiser `{}` belongs to the program that made these results",
+                    self.kind
+                ),
+            })
         })
     }
 
@@ -198,6 +228,11 @@ impl Entrant {
             Origin::External { .. } => serde_json::json!({ "external": settings }),
             Origin::Outside => serde_json::json!({ "outside": self.kind, "settings": settings }),
         }
+    }
+
+    /// Whether it is another program's, as far as results tell of it.
+    pub(super) fn is_outside(&self) -> bool {
+        matches!(self.origin, Origin::Outside)
     }
 
     /// The program that it starts, and whether the file that names it is one of results.
@@ -266,18 +301,7 @@ impl OutsideTable {
             let message = format!("found no JSON, expected the optimiser's settings: {error}");
             document.error_at(self.settings.span(), message, None)
         })?;
-        Ok(Entrant {
-            label: self.name.clone(),
-            kind: self.name,
-            search: None,
-            settings,
-            formulation: self.formulation,
-            needs_derivatives: self.needs_derivatives,
-            seeds: None,
-            budget: None,
-            optimiser: None,
-            origin: Origin::Outside,
-            is_labelled: false,
-        })
+        let Self { formulation, needs_derivatives, .. } = self;
+        Ok(Entrant { formulation, needs_derivatives, ..Entrant::outside(self.name, settings) })
     }
 }

@@ -8,8 +8,9 @@ use std::time::{Duration, Instant};
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 use super::caught::caught;
-use super::plan::{Plan, RunSpec};
+use super::plan::Plan;
 use super::runner::RunError;
+use super::specs::RunSpec;
 use crate::optimiser::Optimiser;
 use crate::search::{Oracle, Rng, Watch};
 

@@ -13,6 +13,7 @@ use super::budget::BudgetTable;
 use super::entrant::Entrant;
 use super::external::{ExternalProblem, ExternalProblemTable};
 use super::field::{self, EntrantTable, Entry, WrittenEntrant};
+use super::import_table::ImportTable;
 use super::kind::{Registry, Source};
 use super::stored::ProblemTable;
 use super::subject::Instance;
@@ -23,7 +24,7 @@ use crate::process::Command;
 const DEFAULTS: &str = include_str!("defaults.toml");
 
 /// The keys of a file that are the same for all kinds of subjects.
-const KEYS: [&str; 6] = ["name", "seeds", "budget", "targets", "problem", "optimiser"];
+const KEYS: [&str; 7] = ["name", "seeds", "budget", "targets", "imported", "problem", "optimiser"];
 
 /// An experiment: every optimiser on every instance, for every seed.
 #[derive(Debug, Clone)]
@@ -37,6 +38,8 @@ pub struct Experiment {
     /// Instances that a program has entered.
     pub(super) instances: Vec<Instance>,
     pub(super) field: Vec<Entry>,
+    /// Of imported results: where they come from, and which there are.
+    pub(super) imported: Option<ImportTable>,
     /// Where the field stands.
     pub(super) field_place: Range<usize>,
     pub(super) document: Document,
@@ -53,6 +56,8 @@ struct FileTable {
     budget: BudgetTable,
     #[serde(default)]
     targets: Option<Spanned<TargetTable>>,
+    #[serde(default)]
+    imported: Option<Spanned<ImportTable>>,
     #[serde(default)]
     problem: Vec<ProblemTable>,
     /// Those of `problem` that are programs.
@@ -75,6 +80,7 @@ impl Experiment {
             source: None,
             instances: Vec::new(),
             field: Vec::new(),
+            imported: None,
             field_place: 0..0,
             document,
         })
@@ -107,7 +113,7 @@ impl Experiment {
         }
         let programs = file.external_problem.into_iter().map(|table| table.instance(document));
         let instances = file.problem.iter().map(|table| table.instance(document)).chain(programs);
-        Ok(Self {
+        let mut experiment = Self {
             name: file.name,
             seeds: file.seeds,
             budget: file.budget.evaluations,
@@ -115,9 +121,15 @@ impl Experiment {
             source: kind.map(|kind| kind.read(document)).transpose()?,
             instances: instances.collect::<Result<_, _>>()?,
             field: entries,
+            imported: None,
             field_place,
             document: document.clone(),
-        })
+        };
+        if let Some(table) = file.imported {
+            experiment.check_imported(table.span())?;
+            experiment.mark_imported(table.into_inner());
+        }
+        Ok(experiment)
     }
 
     /// The name.
@@ -129,6 +141,33 @@ impl Experiment {
     /// optimiser and instance.
     pub fn seeds(&self) -> NonZeroU64 {
         self.seeds
+    }
+
+    /// Of imported results: what they come from, in words.
+    pub fn imported(&self) -> Option<String> {
+        self.imported.as_ref().map(ImportTable::words)
+    }
+
+    /// Marks all of it as imported.
+    pub(super) fn mark_imported(&mut self, table: ImportTable) {
+        let words: Arc<str> = table.words().into();
+        for entry in &mut self.field {
+            entry.entrant.imported = Some(words.clone());
+        }
+        self.imported = Some(table);
+    }
+
+    /// Whether nothing stands beside `imported` that could be run.
+    fn check_imported(&self, place: Range<usize>) -> Result<(), InputError> {
+        let is_foreign = self.source.is_none()
+            && self.instances.iter().all(|instance| instance.subject.is_foreign())
+            && self.field.iter().all(|entry| entry.entrant.is_outside());
+        if is_foreign {
+            return Ok(());
+        }
+        let message = "found optimisers or problems of this program beside `imported`, expected `outside` optimisers and \
+                       their problems alone";
+        Err(self.document.error_at(place, message, None))
     }
 
     /// The programs that it starts, and whether the file says that it is one of results.
@@ -215,6 +254,8 @@ impl Experiment {
             budget: BudgetTable,
             #[serde(skip_serializing_if = "Option::is_none")]
             targets: &'a Option<Spanned<TargetTable>>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            imported: &'a Option<ImportTable>,
         }
         /// What stands behind them.
         #[derive(Serialize)]
@@ -239,6 +280,7 @@ impl Experiment {
             seeds: self.seeds,
             budget: BudgetTable { evaluations: self.budget },
             targets: &self.targets,
+            imported: &self.imported,
         };
         let tail = Tail {
             problem: self.instances.iter().map(problem).collect(),

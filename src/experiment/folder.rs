@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::file::Experiment;
+use super::foreign::Foreign;
 use super::kind::Registry;
-use super::plan::{Plan, RunSpec};
+use super::plan::Plan;
 use super::runner::{Progress, RunError, run};
 use super::shard::Shard;
+use super::specs::RunSpec;
 use super::store::{Store, StoreError};
 use crate::digest::digest;
 use crate::input::{Document, InputError};
-use crate::output::{FileError, check_writable, create_folder, write_file};
+use crate::output::{FileError, check_writable, create_folder, write_file, write_folder};
 use crate::search::Watch;
 
 /// Where other versions of the experiment are kept.
@@ -77,6 +79,14 @@ pub enum FolderError {
         /// The experiment wanted.
         expected: String,
     },
+    /// Imported results are read only.
+    #[error("{} holds the imported results `{name}`, expected another folder", .path.display())]
+    Imported {
+        /// The folder.
+        path: PathBuf,
+        /// What they are called.
+        name: String,
+    },
     /// A file that is there and is no experiment would be lost.
     #[error("{} has no name that can be read, expected the experiment `{expected}`, or no such file", .path.display())]
     Unnamed {
@@ -126,6 +136,19 @@ impl Folder {
         }
         store.list_plan(&plan)?;
         Ok(Self { path: path.to_owned(), plan, store, earlier })
+    }
+
+    /// Makes a folder of results of another program, called as the folder is, whole or not at all. The folder may exist, but only
+    /// empty.
+    pub fn import(path: &Path, foreign: &Foreign) -> Result<Plan, FolderError> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let plan = foreign.experiment(&name)?.plan()?;
+        write_folder(path, |folder| {
+            let folder = Self::create(folder, plan.clone())?;
+            folder.store.write_imported(&folder.plan, foreign)?;
+            Ok::<_, FolderError>(())
+        })?;
+        Ok(plan)
     }
 
     /// Opens a folder of results to read them; nothing is written. Subjects and optimisers that this program does not
@@ -181,6 +204,7 @@ fn check_name(folder: &Path, name: &str) -> Result<(), FolderError> {
     #[derive(Deserialize)]
     struct Named {
         name: String,
+        imported: Option<toml::Value>,
     }
     let path = folder.join(EXPERIMENT);
     if !path.exists() {
@@ -189,8 +213,11 @@ fn check_name(folder: &Path, name: &str) -> Result<(), FolderError> {
     let expected = name.to_owned();
     let text = std::fs::read_to_string(&path).unwrap_or_default();
     match toml::from_str::<Named>(&text) {
-        Ok(Named { name: found }) if found == name => Ok(()),
-        Ok(Named { name: found }) => {
+        Ok(Named { name, imported: Some(_) }) => {
+            Err(FolderError::Imported { path: folder.to_owned(), name })
+        }
+        Ok(Named { name: found, .. }) if found == name => Ok(()),
+        Ok(Named { name: found, .. }) => {
             Err(FolderError::Another { path: folder.to_owned(), found, expected })
         }
         Err(_) => Err(FolderError::Unnamed { path, expected }),

@@ -43,6 +43,11 @@ impl Identity {
         serde_json::from_str(text).map(Self).map_err(|error| error.to_string())
     }
 
+    /// Written values as a type of their own; an error says what they are not.
+    pub(super) fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, String> {
+        T::deserialize(&self.0).map_err(|error| error.to_string())
+    }
+
     pub(super) fn json(&self) -> &serde_json::Value {
         &self.0
     }

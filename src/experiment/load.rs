@@ -2,10 +2,11 @@
 
 use polars::prelude::*;
 
-use super::plan::{Plan, RunSpec};
+use super::plan::Plan;
 use super::record::Status;
 use super::run::{Improvement, Run};
 use super::schema::{runs, traces};
+use super::specs::RunSpec;
 use super::store::{Store, StoreError};
 
 /// The columns of `runs` that are read.

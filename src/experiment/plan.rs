@@ -3,22 +3,18 @@
 use std::collections::{HashMap, HashSet};
 use std::num::NonZeroU64;
 
-use serde::Serialize;
-
 use super::entrant::Entrant;
 use super::field::{Entry, labelled};
 use super::file::Experiment;
+use super::import_table::ImportTable;
 use super::run::Run;
-use super::schema::{FORMAT, runs};
+use super::schema::runs;
+use super::specs::{RunSpec, crossed, imported, problem_identity};
 use super::subject::{Instance, Results};
 use super::targets::TargetTable;
 use super::value::Quantity;
-use crate::digest::digest;
 use crate::input::{Document, InputError};
 use crate::search::Failure;
-
-/// Raised when a change makes the same run give another result.
-const RESULT_VERSION: u32 = 5;
 
 /// Most runs of an experiment; each takes some kilobytes until all are done.
 const MOST_RUNS: u64 = 1_000_000;
@@ -39,24 +35,6 @@ pub struct Plan {
     pub experiment: Experiment,
     facts: Vec<Quantity>,
     measures: Vec<Quantity>,
-}
-
-/// One optimiser on one instance with one seed.
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub struct RunSpec {
-    /// Hash of the recipe.
-    pub key: String,
-    /// Everything that determines the run's result, as JSON.
-    pub recipe: String,
-    /// Index of the instance.
-    pub instance: usize,
-    /// Index of the optimiser.
-    pub optimiser: usize,
-    /// The seed.
-    pub seed: u64,
-    /// Evaluations that the run may spend.
-    pub budget: u64,
 }
 
 impl Experiment {
@@ -80,7 +58,13 @@ impl Experiment {
         self.check_budgets()?;
         self.check_count(instances.len() as u64)?;
         let optimisers = labelled(&self.field, &instances);
-        let runs = runs(&instances, &optimisers, self.seeds, self.budget);
+        let runs = match &self.imported {
+            Some(table) => {
+                let cells = table.runs([instances.len(), optimisers.len()], document)?;
+                imported(&instances, &optimisers, cells)
+            }
+            None => crossed(&instances, &optimisers, self.seeds, self.budget),
+        };
         let mut keys = HashSet::new();
         if let Some(twin) = runs.iter().find(|run| !keys.insert(&run.key)) {
             let message = format!(
@@ -100,7 +84,8 @@ impl Experiment {
     fn check_count(&self, instances: u64) -> Result<(), InputError> {
         let seeds = |entry: &Entry| entry.entrant.seeds.unwrap_or(self.seeds).get();
         let seeds = self.field.iter().map(seeds).fold(0, u64::saturating_add);
-        let count = seeds.saturating_mul(instances);
+        let crossed = || seeds.saturating_mul(instances);
+        let count = self.imported.as_ref().map_or_else(crossed, ImportTable::count);
         if count <= MOST_RUNS {
             return Ok(());
         }
@@ -215,59 +200,6 @@ fn check_entry(entry: &Entry, all: &[Instance], document: &Document) -> Result<(
     Ok(())
 }
 
-fn runs(
-    instances: &[Instance],
-    optimisers: &[Entrant],
-    seeds: NonZeroU64,
-    budget: NonZeroU64,
-) -> Vec<RunSpec> {
-    let mut runs = Vec::new();
-    for (i, instance) in instances.iter().enumerate() {
-        let subject = problem_identity(instance);
-        for (o, entrant) in optimisers.iter().enumerate() {
-            let budget = entrant.budget.or(instance.budget).unwrap_or(budget).get();
-            let (optimiser, space) = (entrant.identity(), entrant.space(instance));
-            runs.extend((1..=entrant.seeds.unwrap_or(seeds).get()).map(|seed| {
-                let recipe = Recipe {
-                    format: FORMAT,
-                    version: RESULT_VERSION,
-                    subject: &subject,
-                    formulation: &space,
-                    optimiser: &optimiser,
-                    seed,
-                    evaluations: budget,
-                };
-                let recipe = serde_json::to_string(&recipe).unwrap_or_default();
-                let key = digest(&recipe);
-                RunSpec { key, recipe, instance: i, optimiser: o, seed, budget }
-            }));
-        }
-    }
-    runs
-}
-
-/// Everything that determines a run's result.
-#[derive(Serialize)]
-struct Recipe<'a> {
-    format: u64,
-    version: u32,
-    subject: &'a serde_json::Value,
-    formulation: &'a str,
-    optimiser: &'a serde_json::Value,
-    seed: u64,
-    evaluations: u64,
-}
-
-/// Which problem an instance is.
-pub(super) fn problem_identity(instance: &Instance) -> serde_json::Value {
-    let subject = &instance.subject;
-    serde_json::json!({
-        "kind": subject.kind(),
-        "name": subject.name(),
-        "identity": subject.identity().json(),
-    })
-}
-
 impl Plan {
     /// Every optimiser of the field on every instance, for seeds 1, 2, … up to `seeds`, with `budget` evaluations
     /// per run. Unlike [`Experiment::plan`] it checks nothing: a run of an optimiser that needs derivatives where there
@@ -288,11 +220,12 @@ impl Plan {
             source: None,
             instances: instances.clone(),
             field: entries.collect(),
+            imported: None,
             field_place: 0..0,
             document: Document::embedded(name, ""),
         };
         let optimisers = labelled(&experiment.field, &instances);
-        let runs = runs(&instances, &optimisers, seeds, budget);
+        let runs = crossed(&instances, &optimisers, seeds, budget);
         experiment.spelt_out(instances, optimisers, runs)
     }
 
@@ -304,6 +237,11 @@ impl Plan {
             Ok(_) if !instance.subject.is_foreign() => None,
             Ok(_) => instance.subject.problem(&entrant.space(instance)).err(),
         }
+    }
+
+    /// Of imported results: what they come from, in words.
+    pub fn imported(&self) -> Option<String> {
+        self.experiment.imported()
     }
 
     /// Whether some optimisers may spend more than others on the same instance.

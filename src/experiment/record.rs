@@ -6,10 +6,15 @@ use std::time::{Duration, SystemTime};
 use chrono::{DateTime, Utc};
 use polars::prelude::*;
 
-use super::plan::{Plan, RunSpec};
+use super::foreign::{ForeignRun, ForeignStep};
+use super::plan::Plan;
 use super::schema::{FORMAT, clocks, runs, traces};
+use super::specs::RunSpec;
 use super::value::{Judgement, Quantity, Value, ValueKind};
 use crate::search::{Oracle, Stop, TracePoint};
+
+/// The word for imported runs in the `status` column.
+pub(super) const IMPORTED: &str = "imported";
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,6 +29,8 @@ pub enum Status {
     Failed(String),
     /// The optimiser or the problem panicked; what the panic said and where.
     Panicked(String),
+    /// Another program made the run; how it ended is not known.
+    Imported,
 }
 
 impl Status {
@@ -47,6 +54,7 @@ impl Status {
             Self::NoDerivatives => "no-derivatives",
             Self::Failed(_) => "failed",
             Self::Panicked(_) => "panicked",
+            Self::Imported => IMPORTED,
         }
     }
 
@@ -60,7 +68,7 @@ impl Status {
         match self {
             Self::NoDerivatives => Stop::NoDerivatives.to_string(),
             Self::Failed(message) | Self::Panicked(message) => message.clone(),
-            Self::Finished | Self::BudgetSpent => String::new(),
+            Self::Finished | Self::BudgetSpent | Self::Imported => String::new(),
         }
     }
 }
@@ -99,20 +107,100 @@ pub(super) struct Ended<'a> {
 
 impl Record {
     pub(super) fn new(plan: &Plan, run: &RunSpec, ended: Ended<'_>) -> PolarsResult<Self> {
-        let cost = ended.cost();
-        let row = row(plan, run, cost, &ended)?;
-        let threads = ended.threads;
-        let message = message(&ended.status, &ended.oracle);
-        let trace = ended.oracle.into_trace();
+        let told = ended.told();
+        let (row, cost, message) = (row(plan, run, &told)?, told.certified, told.message);
+        let threads = Some(ended.threads as u64);
+        let steps: Vec<Step> = ended.oracle.into_trace().iter().map(Step::of).collect();
         Ok(Self {
             key: run.key.clone(),
             cost: cost.unwrap_or(f64::NAN),
             message,
             status: ended.status,
             row,
-            clock: clock_table(&run.key, &trace, threads)?,
-            trace: trace_table(&run.key, &trace)?,
+            clock: clock_table(&run.key, &steps, threads)?,
+            trace: trace_table(&run.key, &steps)?,
         })
+    }
+
+    /// Of a run of another program, as far as its trace tells.
+    pub(super) fn imported(plan: &Plan, run: &RunSpec, found: &ForeignRun) -> PolarsResult<Self> {
+        let last = found.trace.last();
+        let cost = last.map(|step| step.cost);
+        let told = Told {
+            cost,
+            certified: cost,
+            evaluations: found.evaluations,
+            seconds: last.and_then(|step| step.seconds),
+            status: IMPORTED,
+            ..Told::default()
+        };
+        let steps: Vec<Step> = found.trace.iter().map(Step::imported).collect();
+        Ok(Self {
+            key: run.key.clone(),
+            cost: cost.unwrap_or(f64::NAN),
+            message: String::new(),
+            status: Status::Imported,
+            row: row(plan, run, &told)?,
+            clock: clock_table(&run.key, &steps, None)?,
+            trace: trace_table(&run.key, &steps)?,
+        })
+    }
+}
+
+/// What is told of a run; what is not known is none.
+#[derive(Debug, Default)]
+struct Told {
+    /// Best cost, as the search evaluated it.
+    cost: Option<f64>,
+    violation: Option<f64>,
+    point: Option<Vec<f64>>,
+    certified: Option<f64>,
+    /// In the order of the subject's.
+    measures: Vec<Value>,
+    evaluations: u64,
+    first_feasible: Option<u64>,
+    counts: Option<Counts>,
+    /// \[s\]
+    seconds: Option<f64>,
+    /// \[s\]
+    seconds_in_problem: Option<f64>,
+    status: &'static str,
+    message: String,
+    cpu: Option<&'static str>,
+    date: Option<String>,
+}
+
+/// What the oracle counts beside evaluations.
+#[derive(Debug, Clone, Copy)]
+struct Counts {
+    linearisations: u64,
+    curvatures: u64,
+    conic_solves: u64,
+    conic_failures: u64,
+}
+
+/// A row of a trace and its clock; what is not known is none.
+struct Step {
+    evaluation: u64,
+    cost: f64,
+    violation: Option<f64>,
+    /// \[s\]
+    seconds: Option<f64>,
+}
+
+impl Step {
+    fn of(point: &TracePoint) -> Self {
+        Self {
+            evaluation: point.evaluation,
+            cost: point.best.cost,
+            violation: Some(point.best.violation),
+            seconds: Some(point.elapsed.as_secs_f64()),
+        }
+    }
+
+    fn imported(step: &ForeignStep) -> Self {
+        let ForeignStep { evaluation, cost, seconds } = *step;
+        Self { evaluation, cost, violation: None, seconds }
     }
 }
 
@@ -123,6 +211,32 @@ impl Ended<'_> {
         judged
             .or_else(|| self.oracle.best().filter(|_| !self.is_unjudged).map(|b| b.evaluation.cost))
     }
+
+    fn told(&self) -> Told {
+        let Self { status, judgement, seconds, oracle, .. } = self;
+        let best = oracle.best();
+        Told {
+            cost: best.map(|best| best.evaluation.cost),
+            violation: best.map(|best| best.evaluation.violation),
+            point: best.map(|best| best.x.clone()),
+            certified: self.cost(),
+            measures: judgement.as_ref().map_or_else(Vec::new, |found| found.measures.clone()),
+            evaluations: oracle.evaluations(),
+            first_feasible: oracle.first_feasible(),
+            counts: Some(Counts {
+                linearisations: oracle.linearisations(),
+                curvatures: oracle.curvatures(),
+                conic_solves: oracle.conic_solves(),
+                conic_failures: oracle.conic_failures(),
+            }),
+            seconds: Some(seconds.as_secs_f64()),
+            seconds_in_problem: Some(oracle.time_in_problem().as_secs_f64()),
+            status: status.name(),
+            message: message(status, oracle),
+            cpu: Some(cpu()),
+            date: Some(DateTime::<Utc>::from(SystemTime::now()).to_rfc3339()),
+        }
+    }
 }
 
 /// What is to be said of a run beyond its status.
@@ -132,17 +246,10 @@ fn message(status: &Status, oracle: &Oracle<'_>) -> String {
 }
 
 /// The `runs` table.
-fn row(
-    plan: &Plan,
-    run: &RunSpec,
-    cost: Option<f64>,
-    ended: &Ended<'_>,
-) -> PolarsResult<DataFrame> {
-    let Ended { status, judgement, seconds, oracle, .. } = ended;
+fn row(plan: &Plan, run: &RunSpec, told: &Told) -> PolarsResult<DataFrame> {
     let entrant = &plan.optimisers[run.optimiser];
     let instance = &plan.instances[run.instance];
     let space = entrant.space(instance);
-    let best = oracle.best();
     let head = df!(
         runs::FORMAT => [FORMAT],
         runs::KEY => [run.key.as_str()],
@@ -160,29 +267,29 @@ fn row(
         runs::TARGETS => list(Some(&instance.targets)),
         runs::SEED => [run.seed],
         runs::BUDGET => [run.budget],
-        runs::COST => [best.map(|best| best.evaluation.cost)],
-        runs::VIOLATION => [best.map(|best| best.evaluation.violation)],
-        runs::POINT => list(best.map(|best| &best.x)),
-        runs::CERTIFIED_COST => [cost],
+        runs::COST => [told.cost],
+        runs::VIOLATION => [told.violation],
+        runs::POINT => list(told.point.as_ref()),
+        runs::CERTIFIED_COST => [told.certified],
     )?;
-    let values = judgement.as_ref().map_or_else(Vec::new, |found| found.measures.clone());
+    let values = told.measures.iter().cloned();
     let own: Vec<_> = instance.subject.measures().into_iter().zip(values).collect();
     let measures = cells(plan.measures(), &own);
     let tail = df!(
-        runs::EVALUATIONS => [oracle.evaluations()],
-        runs::FIRST_FEASIBLE => [oracle.first_feasible()],
-        runs::LINEARISATIONS => [oracle.linearisations()],
-        runs::CURVATURES => [oracle.curvatures()],
-        runs::CONIC_SOLVES => [oracle.conic_solves()],
-        runs::CONIC_FAILURES => [oracle.conic_failures()],
-        runs::SECONDS => [seconds.as_secs_f64()],
-        runs::SECONDS_IN_PROBLEM => [oracle.time_in_problem().as_secs_f64()],
-        runs::STATUS => [status.name()],
-        runs::MESSAGE => [message(status, oracle)],
+        runs::EVALUATIONS => [told.evaluations],
+        runs::FIRST_FEASIBLE => [told.first_feasible],
+        runs::LINEARISATIONS => [told.counts.map(|counts| counts.linearisations)],
+        runs::CURVATURES => [told.counts.map(|counts| counts.curvatures)],
+        runs::CONIC_SOLVES => [told.counts.map(|counts| counts.conic_solves)],
+        runs::CONIC_FAILURES => [told.counts.map(|counts| counts.conic_failures)],
+        runs::SECONDS => [told.seconds],
+        runs::SECONDS_IN_PROBLEM => [told.seconds_in_problem],
+        runs::STATUS => [told.status],
+        runs::MESSAGE => [told.message.as_str()],
         runs::VERSION => [env!("CARGO_PKG_VERSION")],
         runs::COMMIT => [git_version::git_version!(args = ["--always", "--dirty"], fallback = "unknown")],
-        runs::CPU => [cpu()],
-        runs::DATE => [DateTime::<Utc>::from(SystemTime::now()).to_rfc3339()],
+        runs::CPU => [told.cpu],
+        runs::DATE => [told.date.as_deref()],
     )?;
     head.hstack(&facts)?.hstack(found.columns())?.hstack(&measures)?.hstack(tail.columns())
 }
@@ -223,22 +330,22 @@ fn list(values: Option<&Vec<f64>>) -> Series {
 
 /// The `traces` table: improvements and the last evaluation. It holds no wall time, so that equal
 /// runs give equal files.
-fn trace_table(key: &str, trace: &[TracePoint]) -> PolarsResult<DataFrame> {
+fn trace_table(key: &str, trace: &[Step]) -> PolarsResult<DataFrame> {
     df!(
         traces::KEY => vec![key; trace.len()],
         traces::EVALUATION => trace.iter().map(|p| p.evaluation).collect::<Vec<_>>(),
-        traces::COST => trace.iter().map(|p| p.best.cost).collect::<Vec<_>>(),
-        traces::VIOLATION => trace.iter().map(|p| p.best.violation).collect::<Vec<_>>(),
+        traces::COST => trace.iter().map(|p| p.cost).collect::<Vec<_>>(),
+        traces::VIOLATION => trace.iter().map(|p| p.violation).collect::<Vec<_>>(),
     )
 }
 
 /// The `clocks` table: when each row of the trace was reached \[s\], and how many runs were made at a time.
-fn clock_table(key: &str, trace: &[TracePoint], threads: usize) -> PolarsResult<DataFrame> {
+fn clock_table(key: &str, trace: &[Step], threads: Option<u64>) -> PolarsResult<DataFrame> {
     df!(
         clocks::KEY => vec![key; trace.len()],
         clocks::EVALUATION => trace.iter().map(|p| p.evaluation).collect::<Vec<_>>(),
-        clocks::SECONDS => trace.iter().map(|p| p.elapsed.as_secs_f64()).collect::<Vec<_>>(),
-        clocks::THREADS => vec![threads as u64; trace.len()],
+        clocks::SECONDS => trace.iter().map(|p| p.seconds).collect::<Vec<_>>(),
+        clocks::THREADS => vec![threads; trace.len()],
     )
 }
 

@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use super::caught::caught;
-use super::plan::{Plan, RunSpec};
+use super::plan::Plan;
 use super::record::{Ended, Record, Status};
+use super::specs::RunSpec;
 use super::store::{Damage, Store, StoreError};
 use super::subject::Subject;
 use super::value::Judgement;

@@ -79,7 +79,7 @@ table! {
     CONIC_FAILURES = "conic_failures", Count, "conic subproblems given up";
     SECONDS = "seconds", Real, "wall time in seconds";
     SECONDS_IN_PROBLEM = "seconds_in_problem", Real, "the part of it inside the problem";
-    STATUS = "status", Text, "`finished`, `budget-spent`, `no-derivatives`, `failed` or `panicked`";
+    STATUS = "status", Text, "`finished`, `budget-spent`, `no-derivatives`, `failed` or `panicked`; `imported` for runs of other programs";
     MESSAGE = "message", Text, "why the run failed, or what the panic said and where";
     VERSION = "version", Text, "version of the program";
     COMMIT = "commit", Text, "its commit";

@@ -1,13 +1,16 @@
 //! Subjects of another program, as far as a file of results tells of them.
 
+use std::any::Any;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use super::budget::BudgetTable;
 use super::identity::Identity;
+use super::origin::{IMPORTED, Origin};
 use super::plain::PLAIN;
-use super::subject::{Coordinate, Instance, Results, Subject};
+use super::subject::{Coordinate, Instance, Number, Numbers, Results, Subject};
 use super::value::{Quantity, Value};
 use crate::exhibit::{Exhibits, Finding};
 use crate::input::{Document, Finite, InputError};
@@ -94,17 +97,53 @@ impl ProblemTable {
         }
     }
 
+    /// Of an imported instance: what determines it, its least known cost, the cost that searches begin with, and targets.
+    pub(super) fn imported(
+        origin: &Origin,
+        optimum: Option<f64>,
+        start_cost: f64,
+        targets: &[f64],
+    ) -> Self {
+        let [label, group] = origin.labels();
+        let known_cost = optimum.filter(|cost| cost.is_finite()).map(Finite);
+        Self {
+            kind: IMPORTED.to_owned(),
+            series: Some(origin.subject()),
+            name: origin.subject(),
+            title: None,
+            group: (group != label).then_some(group),
+            label,
+            dimension: origin.dimension.and_then(|n| usize::try_from(n).ok()).unwrap_or(1),
+            least_cost: known_cost.filter(|_| origin.has_least_cost()),
+            known_cost,
+            start_cost,
+            symbol: letter(),
+            spaces: Vec::new(),
+            targets: targets.iter().copied().map(Finite).collect(),
+            budget: None,
+            coordinates: Vec::new(),
+            identity: toml::Spanned::new(0..0, origin.identity().to_string()),
+            facts: Vec::new(),
+            measures: Vec::new(),
+        }
+    }
+
     /// The instance, which can be reported and not be run.
     pub(super) fn instance(&self, document: &Document) -> Result<Instance, InputError> {
         let identity = Identity::read(self.identity.get_ref()).map_err(|error| {
             let message = format!("found no JSON, expected the problem's identity: {error}");
             document.error_at(self.identity.span(), message, None)
         })?;
+        let is_imported = self.kind == IMPORTED;
+        let origin = is_imported.then(|| identity.parse()).transpose().map_err(|error| {
+            let message = format!("found no origin of an imported problem: {error}");
+            document.error_at(self.identity.span(), message, None)
+        })?;
         let group = self.group.clone().unwrap_or_else(|| self.label.clone());
         let title = self.title.clone().unwrap_or_else(|| group.clone());
         let series = self.series.clone().unwrap_or_else(|| self.label.clone());
         let targets: Vec<f64> = self.targets.iter().map(|target| target.0).collect();
-        let subject = Arc::new(Stored { identity, table: self.clone() });
+        let subject = Arc::new(Stored { identity, origin, table: self.clone() });
         Ok(Instance {
             group,
             title,
@@ -122,6 +161,13 @@ impl ProblemTable {
 struct Stored {
     table: ProblemTable,
     identity: Identity,
+    /// Of an imported one: where it comes from.
+    origin: Option<Origin>,
+}
+
+/// What determines an imported instance; none for others.
+pub(super) fn origin(instance: &Instance) -> Option<&Origin> {
+    instance.subject.as_any()?.downcast_ref::<Stored>()?.origin.as_ref()
 }
 
 impl Subject for Stored {
@@ -181,8 +227,40 @@ impl Subject for Stored {
         &self.table.symbol
     }
 
+    fn as_any(&self) -> Option<&dyn Any> {
+        Some(self)
+    }
+
+    /// An imported function keeps the number that an export of this program gave it; others have one that follows from all that
+    /// determines them, since their own stand for other functions here.
+    fn numbers(&self) -> Option<Numbers> {
+        let origin = self.origin.as_ref()?;
+        let function = origin.function_identity();
+        let by_identity = || Number::Of(self.identity());
+        Some(match (origin.function, origin.instance) {
+            (Some(number), Some(instance)) if origin.is_exported() => Numbers {
+                function: Number::Exported(number, function),
+                instance: Number::Exported(instance, self.identity()),
+            },
+            (_, instance) => Numbers {
+                function: Number::Of(function),
+                instance: instance.map_or_else(by_identity, Number::Known),
+            },
+        })
+    }
+
+    fn dependence(&self, instances: &[&Instance]) -> Option<&'static str> {
+        let functions = instances.iter().filter_map(|instance| origin(instance));
+        let mut seen = HashSet::new();
+        let mut names = functions.map(|origin| origin.function_identity().to_string());
+        names.any(|name| !seen.insert(name)).then_some(
+            "Instances and dimensions of one imported function are not independent functions, so p-values are smaller than \
+             they should be.",
+        )
+    }
+
     fn exhibits(&self, _: &Results<'_>) -> Exhibits {
-        if self.table.kind == PLAIN {
+        if [PLAIN, IMPORTED].contains(&self.table.kind.as_str()) {
             return Exhibits::default();
         }
         let left_out = format!(

@@ -172,6 +172,8 @@ pub enum Number {
     Known(u32),
     /// With one that follows from what determines it.
     Of(Identity),
+    /// With the one that an export of this program gave it; the identity tells it from others with this number.
+    Exported(u32, Identity),
 }
 
 /// One problem of an experiment.
@@ -292,8 +294,19 @@ impl<'a> Results<'a> {
 
     /// The best run of every instance that has one, in the order of the plan.
     pub fn best_runs(&self) -> Vec<&'a Run> {
+        self.best_runs_where(|_| true)
+    }
+
+    /// The best of those runs that have a point, as imported ones do not, of every instance that has one, in the order of the
+    /// plan.
+    pub fn best_runs_with_points(&self) -> Vec<&'a Run> {
+        self.best_runs_where(|run| !run.x.is_empty())
+    }
+
+    fn best_runs_where(&self, counts: impl Fn(&Run) -> bool) -> Vec<&'a Run> {
         let mut by_instance: Vec<Vec<&Run>> = vec![Vec::new(); self.instances.len()];
-        self.runs.iter().for_each(|run| by_instance[run.instance].push(run));
+        let runs = self.runs.iter().filter(|run| counts(run));
+        runs.for_each(|run| by_instance[run.instance].push(run));
         by_instance.into_iter().filter_map(|runs| best_run(runs.into_iter())).collect()
     }
 }

@@ -46,7 +46,8 @@ pub(super) fn write(suite: &Suite, folder: &Path) -> Result<(), SuiteError> {
             let groups: BTreeSet<&str> =
                 trials.iter().map(|trial| suite.objective(trial).group.as_str()).collect();
             let groups: Vec<&str> = groups.into_iter().collect();
-            head(&mut index, algorithm, function, (id, dimension), &groups.join("; "));
+            let budget = trials.iter().map(|trial| trial.budget).max().unwrap_or(1);
+            head(&mut index, algorithm, function, (id, dimension), (&groups.join("; "), budget));
             index.push_str(&path);
             let (mut by_target, mut by_evaluation) = (String::new(), String::new());
             for trial in trials {
@@ -73,7 +74,7 @@ fn head(
     algorithm: &Algorithm,
     function: &Function,
     (id, dimension): (u32, u16),
-    group: &str,
+    (group, budget): (&str, u64),
 ) {
     let known = function.instances.iter().all(|instance| instance.is_known);
     let optimum = if known { "known beforehand" } else { "least cost found by any of these runs" };
@@ -82,7 +83,8 @@ fn head(
         "suite = '{SUITE}', funcId = {id}, DIM = {dimension}, Precision = {PRECISION:.3e}, \
          algId = '{}', coco_version = '2.8.2', logger = 'bbob', data_format = 'bbob-new2', \
          settings = ''\n\
-         % {}: {} {}; group {group}; Fopt: {optimum}; instance i with seed s is trial {SEEDS} i + s",
+         % {}: {} {}; group {group}; Fopt: {optimum}; instance i with seed s is trial {SEEDS} i + s; \
+         budget {budget}",
         algorithm.name.replace('\'', "\""),
         function.name,
         algorithm.name,

@@ -44,7 +44,7 @@ pub(super) fn write(suite: &Suite, folder: &Path) -> Result<(), SuiteError> {
             "maximization": false,
             "algorithm": { "name": algorithm.name, "info": algorithm.settings },
             "experiment_attributes": experiment_attributes(suite, function),
-            "run_attributes": ["seed", "optimum"],
+            "run_attributes": ["seed", "optimum", "budget"],
             "attributes": COLUMNS,
             "scenarios": scenarios,
         });
@@ -78,6 +78,7 @@ fn run(suite: &Suite, trial: &ExportedRun) -> Value {
         "best": { "evals": found.map(|(evaluation, _)| evaluation), "y": best, "x": [] },
         "seed": trial.seed,
         "optimum": suite.objective(trial).optimum,
+        "budget": trial.budget,
     })
 }
 

@@ -1,17 +1,14 @@
 //! An experiment's runs as benchmarking tools see them: algorithms, functions, trials.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
-use std::ops::RangeInclusive;
 
 use polars::prelude::*;
 
 use crate::analysis::least_found;
-use crate::digest::digest;
-use crate::experiment::{Identity, Instance, Number, Numbers, Plan, Run};
+use crate::experiment::{Numbering, NumberingError, Plan, Run, one_line};
 use crate::output::{FileError, file_name, unlike};
 
-/// The name of the suite in the files.
-pub(super) const SUITE: &str = "driftless";
+pub(super) use crate::experiment::EXPORTED_SUITE as SUITE;
 
 /// The stored runs of an experiment.
 #[derive(Debug, Clone)]
@@ -86,6 +83,8 @@ pub struct ExportedRun {
     pub instance: usize,
     /// Seed.
     pub seed: u64,
+    /// Evaluations allowed.
+    pub budget: u64,
     /// Evaluation and best cost so far: the first evaluation, improvements, the last one. The cost is
     /// infinite until one is finite, and to the end for a run that found nothing. A run that failed
     /// before its first evaluation has one here, since the formats begin there.
@@ -101,12 +100,9 @@ pub enum SuiteError {
     /// The stored tables are not what they should be.
     #[error("cannot use the stored tables")]
     Table(#[from] PolarsError),
-    /// The formats count variables in 16 bits.
-    #[error("found {0} variables, expected 65,535 at most")]
-    TooManyVariables(usize),
-    /// And functions, and instances of one, too.
-    #[error("found more {0} than the formats have numbers for")]
-    TooMany(&'static str),
+    /// The formats have too few numbers.
+    #[error(transparent)]
+    Numbering(#[from] NumberingError),
 }
 
 /// The trials of each algorithm on each function, by their dimension, with seeds of one instance
@@ -117,10 +113,12 @@ impl Suite {
     /// The runs of a plan that are stored.
     pub fn new(plan: &Plan, runs: &[Run]) -> Result<Self, SuiteError> {
         let traces: Vec<Trace> = runs.iter().map(whole).collect();
-        let (functions, places, renumbered) = functions(plan, &least_found(plan, runs))?;
+        let numbering = plan.numbering()?;
+        let (functions, places) = functions(plan, &numbering, &least_found(plan, runs));
         let trial = |(run, trace): (&Run, Trace)| {
             let (function, instance) = places[run.instance];
-            ExportedRun { algorithm: run.optimiser, function, instance, seed: run.seed, trace }
+            let (algorithm, seed, budget) = (run.optimiser, run.seed, run.budget);
+            ExportedRun { algorithm, function, instance, seed, budget, trace }
         };
         Ok(Self {
             name: plan.name.clone(),
@@ -128,7 +126,7 @@ impl Suite {
             algorithms: algorithms(plan),
             functions,
             trials: runs.iter().zip(traces).map(trial).collect(),
-            renumbered,
+            renumbered: numbering.renumbered,
         })
     }
 
@@ -189,31 +187,19 @@ fn algorithms(plan: &Plan) -> Vec<Algorithm> {
 /// Place of a function, and of an instance within it.
 type Place = (usize, usize);
 
-/// The functions, where each instance of the plan is among them, and how many have a number that is not their own.
-fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>, usize), SuiteError> {
-    let mut renumbered = 0;
+/// The functions, and where each instance of the plan is among them.
+fn functions(plan: &Plan, numbering: &Numbering, least: &[f64]) -> (Vec<Function>, Vec<Place>) {
     let mut functions: Vec<Function> = Vec::new();
     let mut places = Vec::new();
-    let mut by_number: HashMap<u32, (usize, Number)> = HashMap::new();
-    let mut taken: HashSet<(usize, u16, u32)> = HashSet::new();
-    for (instance, least) in plan.instances.iter().zip(least) {
-        let Numbers { function, instance: own } = numbers(instance);
-        let is_another = |value: u32| by_number.get(&value).is_some_and(|(_, of)| *of != function);
-        let value = free(&function, is_another).ok_or(SuiteError::TooMany("functions"))?;
-        let known = by_number.get(&value).map(|(place, _)| *place);
-        let place = known.unwrap_or(functions.len());
-        if known.is_none() {
-            renumbered += usize::from(value != own_number(&function));
-            functions.push(self::function(instance, value, &function));
-        }
-        by_number.insert(value, (place, function));
-        let variables = instance.subject.dimension();
-        let dimension =
-            u16::try_from(variables).map_err(|_| SuiteError::TooManyVariables(variables))?;
-        let value = free(&own, |value| taken.contains(&(place, dimension, value)))
-            .ok_or(SuiteError::TooMany("instances of one function"))?;
-        renumbered += usize::from(value != own_number(&own));
-        taken.insert((place, dimension, value));
+    let mut by_number: HashMap<u32, usize> = HashMap::new();
+    for ((instance, numbered), least) in plan.instances.iter().zip(&numbering.instances).zip(least)
+    {
+        let place = *by_number.entry(numbered.function).or_insert_with(|| {
+            let (number, name) = (numbered.function, numbered.name.clone());
+            let (groups, instances) = (Vec::new(), Vec::new());
+            functions.push(Function { number, file: file_name(&name), name, groups, instances });
+            functions.len() - 1
+        });
         let of_function = &mut functions[place];
         if !of_function.groups.contains(&instance.group) {
             of_function.groups.push(instance.group.clone());
@@ -221,67 +207,12 @@ fn functions(plan: &Plan, least: &[f64]) -> Result<(Vec<Function>, Vec<Place>, u
         let optimum = instance.subject.known_cost();
         places.push((place, of_function.instances.len()));
         of_function.instances.push(Objective {
-            number: value,
+            number: numbered.instance,
             group: instance.group.clone(),
-            dimension,
+            dimension: numbered.dimension,
             optimum: optimum.unwrap_or(*least),
             is_known: optimum.is_some(),
         });
     }
-    Ok((functions, places, renumbered))
-}
-
-fn numbers(instance: &Instance) -> Numbers {
-    let subject = &instance.subject;
-    let by_group = || Numbers {
-        function: Number::Of(
-            Identity::new().with("name", subject.name()).with("group", instance.group.as_str()),
-        ),
-        instance: Number::Of(subject.identity()),
-    };
-    subject.numbers().unwrap_or_else(by_group)
-}
-
-/// The numbers that are worked out; readers count in 16 bits.
-const WORKED_OUT: RangeInclusive<u32> = 10_001..=65_535;
-
-/// The number that a function or an instance has where no other has it.
-fn own_number(number: &Number) -> u32 {
-    let (first, last) = WORKED_OUT.into_inner();
-    let hashed = |text: &str| {
-        let hash = u64::from_str_radix(&digest(text), 16).unwrap_or_default();
-        first + (hash % u64::from(last - first + 1)) as u32
-    };
-    match number {
-        Number::Known(number) if (1..first).contains(number) => *number,
-        Number::Known(number) => hashed(&number.to_string()),
-        Number::Of(identity) => hashed(&identity.to_string()),
-    }
-}
-
-/// The number of a function or an instance or, where that is taken, as by one and the same with another budget, the next that is
-/// not.
-fn free(number: &Number, is_taken: impl Fn(u32) -> bool) -> Option<u32> {
-    let (first, last) = WORKED_OUT.into_inner();
-    let own = own_number(number);
-    std::iter::once(own)
-        .chain((own + 1).max(first)..=last)
-        .chain(WORKED_OUT)
-        .find(|value| !is_taken(*value))
-}
-
-fn function(instance: &Instance, number: u32, by: &Number) -> Function {
-    let (problem, group) = (instance.subject.name(), &instance.group);
-    let name = match by {
-        Number::Known(_) => problem.to_owned(),
-        Number::Of(_) if group.starts_with(problem) => group.clone(),
-        Number::Of(_) => format!("{problem} {group}"),
-    };
-    let name = one_line(&name);
-    Function { number, file: file_name(&name), name, groups: Vec::new(), instances: Vec::new() }
-}
-
-/// A label without line breaks and doubled spaces.
-fn one_line(label: &str) -> String {
-    label.split_whitespace().collect::<Vec<_>>().join(" ")
+    (functions, places)
 }

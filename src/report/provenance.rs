@@ -30,6 +30,17 @@ pub(super) struct Origin {
 const COLUMNS: [(&str, &str); 3] =
     [(runs::VERSION, "Version of driftless"), (runs::COMMIT, "Commit"), (runs::CPU, "Processor")];
 
+/// What runs were imported from.
+fn imported(plan: &Plan) -> Fact {
+    let mut counts = Counts::default();
+    for run in &plan.runs {
+        if let Some(from) = plan.optimisers[run.optimiser].imported() {
+            *counts.0.entry(from.to_owned()).or_default() += 1;
+        }
+    }
+    Fact { name: "Imported from".to_owned(), values: counts.values() }
+}
+
 /// What the stored runs of a plan say of how they were made. Nothing depends on when it is asked.
 pub(super) fn provenance(plan: &Plan, stores: &[&Store]) -> Result<Vec<Fact>, StoreError> {
     let planned = plan.places();
@@ -61,7 +72,10 @@ pub(super) fn provenance(plan: &Plan, stores: &[&Store]) -> Result<Vec<Fact>, St
     let named = columns.iter().map(|(_, name)| *name).zip(counts);
     let facts = named.chain([("Runs at a time", threads)]);
     let facts = facts.map(|(name, counts)| Fact { name: name.to_owned(), values: counts.values() });
-    Ok(facts.chain([dates.period()]).filter(|fact| !fact.values.is_empty()).collect())
+    Ok(facts
+        .chain([dates.period(), imported(plan)])
+        .filter(|fact| !fact.values.is_empty())
+        .collect())
 }
 
 /// The rows at which another run's begin.

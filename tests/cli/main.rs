@@ -7,6 +7,10 @@ mod experiments;
 mod export;
 mod folder;
 #[cfg(feature = "harness")]
+mod import;
+#[cfg(feature = "harness")]
+mod import_mistakes;
+#[cfg(feature = "harness")]
 mod processes;
 #[cfg(feature = "harness")]
 mod reports;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs small experiments, exports them in both formats and has them read by the tools whose formats they are;
-# compares what these say with the stored tables. Needs Python 3.11 or later and PyPI.
+# compares what these say with the stored tables, also of two experiments together, and reads the exports back. Needs Python 3.11 or later and PyPI.
 #   ./run.sh            builds the program and takes a minute
 #   PROGRAM=… ./run.sh  takes a program that is built already
 set -euo pipefail
@@ -25,3 +25,18 @@ for experiment in "$here"/experiments/*.toml; do
     done
 done
 "$python" "$here/compare.py" "$results"
+
+# Two experiments' exports in one folder, and what `import` makes of it beside both.
+together=$folder/together
+rm -rf "$together"
+ours=("$results/functions/stored" "$results/others/stored")
+"$program" report "${ours[@]}" --out "$together/ours" > /dev/null 2>&1
+for format in ioh coco; do
+    mkdir -p "$together/$format"
+    for name in functions others; do
+        cp -r "$results/$name/$format" "$together/$format/$name"
+    done
+    "$program" import --format $format "$together/$format" --out "$together/from-$format" > /dev/null 2>&1
+done
+"$program" report "${ours[@]}" "$together/from-ioh" "$together/from-coco" --out "$together/all" > /dev/null 2>&1
+"$python" "$here/together.py" "$together"

@@ -69,7 +69,7 @@ def expected_running_time(trials, target, failure=None):
 
 
 def optima(name, table):
-    """The optimum of every group: zero for functions, of the paper's task the best known cost, else the
+    """The optimum of every group: zero for test functions, of the paper's task the best known cost, else the
     least found."""
     motions = tomllib.loads(BEST_KNOWN.read_text())["motion"]
     known = {f"terms={motion['terms']}": motion["j"] for motion in motions if "terms" in motion}
@@ -79,5 +79,5 @@ def optima(name, table):
         costs = [trial.cost[-1] for trial in trials if len(trial.cost)]
         least[group] = min([least[group], *costs])
     return {
-        group: 0.0 if name == "functions" else known.get(group, least[group]) for group, _ in table
+        group: 0.0 if name in ("functions", "others") else known.get(group, least[group]) for group, _ in table
     }

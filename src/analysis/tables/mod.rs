@@ -52,7 +52,7 @@ impl Analysis<'_> {
         tables.push(fixed_target::targets(self)?);
         tables.push(fixed_target::table(self)?);
         tables.push(fixed_budget::table(self)?);
-        tables.push(feasibility::table(self)?);
+        tables.extend(feasibility::table(self)?);
         if let Some(blocks) = &self.blocks {
             tables.push(ranks::friedman_table(blocks)?);
             tables.push(ranks::table(self, blocks)?);
@@ -66,11 +66,15 @@ impl Analysis<'_> {
         tables.push(distribution::table(self)?);
         tables.extend(profiles::tables(self)?);
         let (stored, planned) = (self.runs.len(), self.plan.runs.len());
+        let mut note = String::new();
         if stored < planned {
-            let note = format!(" Only {stored} of {planned} runs are stored so far.");
-            for table in &mut tables {
-                table.caption += &note;
-            }
+            note = format!(" Only {stored} of {planned} runs are stored so far.");
+        }
+        if self.plan.optimisers.iter().any(|entrant| entrant.imported().is_some()) {
+            note += " Runs of imported optimisers are as their own programs evaluated them.";
+        }
+        for table in &mut tables {
+            table.caption += &note;
         }
         Ok(tables)
     }

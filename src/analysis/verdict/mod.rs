@@ -11,14 +11,17 @@ mod truths;
 use std::collections::HashSet;
 
 use super::grouped::Analysis;
-use crate::exhibit::words::plural;
+use crate::exhibit::words::{list, plural};
 use crate::exhibit::{Exhibits, Finding};
+
+/// Imported optimisers that are named one by one.
+const MOST_NAMED: usize = 8;
 
 impl Analysis<'_> {
     /// What the runs say, the most important first, together with what the subjects say of their own. The numbers are
     /// rounded to what does not depend on the machine.
     pub fn findings(&self, own: &Exhibits) -> Vec<Finding> {
-        let mut findings: Vec<Finding> = missing(self).into_iter().collect();
+        let mut findings: Vec<Finding> = missing(self).into_iter().chain(imported(self)).collect();
         if self.runs.is_empty() {
             return findings;
         }
@@ -35,6 +38,29 @@ impl Analysis<'_> {
         findings.extend(own.findings.iter().cloned());
         findings
     }
+}
+
+/// Which optimisers' runs other programs have made.
+fn imported(analysis: &Analysis<'_>) -> Option<Finding> {
+    let mut sources: Vec<(&str, Vec<String>)> = Vec::new();
+    for entrant in &analysis.plan.optimisers {
+        let Some(from) = entrant.imported() else { continue };
+        match sources.iter_mut().find(|(known, _)| *known == from) {
+            Some((_, names)) => names.push(entrant.label.clone()),
+            None => sources.push((from, vec![entrant.label.clone()])),
+        }
+    }
+    let told = |(from, names): &(&str, Vec<String>)| match names.len() {
+        n if n <= MOST_NAMED => format!("from {from}: {}", list(names)),
+        n => format!("from {from}: {}", plural(n, "optimiser")),
+    };
+    let told: Vec<String> = sources.iter().map(told).collect();
+    let answer = format!(
+        "Imported {}. Of these runs only the best costs by evaluations are known, as their own programs evaluated them: no \
+         points and no limits.",
+        told.join("; ")
+    );
+    (!told.is_empty()).then(|| Finding::new("Is anything imported?", answer))
 }
 
 /// What is not there yet, and what failed.

@@ -8,6 +8,7 @@ use polars::prelude::*;
 use super::name::is_key;
 use super::stack::only;
 use crate::digest::digest;
+use crate::experiment::record::IMPORTED;
 use crate::experiment::schema::{Cell, Column, FORMAT, clocks, runs, traces};
 
 /// For each key the lists of its run that have a length of their own, by their columns.
@@ -32,6 +33,20 @@ const NULLABLE: [&str; 6] = [
     runs::FIRST_FEASIBLE,
 ];
 
+/// And those that may be null of imported runs, of which no more is known than a trace.
+const UNKNOWN: [&str; 10] = [
+    runs::LINEARISATIONS,
+    runs::CURVATURES,
+    runs::CONIC_SOLVES,
+    runs::CONIC_FAILURES,
+    runs::SECONDS,
+    runs::SECONDS_IN_PROBLEM,
+    runs::CPU,
+    runs::DATE,
+    traces::VIOLATION,
+    clocks::THREADS,
+];
+
 /// What is wrong with a table, to be read behind its file's name.
 type Reason = String;
 
@@ -47,8 +62,9 @@ pub(super) fn check(
     let trace = own_rows(traces, &keys, &found).map_err(of("traces"))?;
     let clock = own_rows(clocks, &keys, &found).map_err(of("clocks"))?;
     if !found.is_empty() {
-        check_trace(&trace, &found).map_err(of("traces"))?;
-        check_clock(&clock, &trace).map_err(of("clocks"))?;
+        let nullable: &[&str] = if are_imported(runs) { &UNKNOWN } else { &[] };
+        check_trace(&trace, &found, nullable).map_err(of("traces"))?;
+        check_clock(&clock, &trace, nullable).map_err(of("clocks"))?;
     }
     Ok(Contents { keys, trace_rows: traces.height() })
 }
@@ -77,7 +93,8 @@ fn check_runs(
     if frame.height() == 0 {
         return Ok((keys, HashMap::new()));
     }
-    check_columns(&frame, runs::COLUMNS, &NULLABLE)?;
+    let unknown: &[&str] = if are_imported(&frame) { &UNKNOWN } else { &[] };
+    check_columns(&frame, runs::COLUMNS, &[&NULLABLE[..], unknown].concat())?;
     check_finite(&frame, &[runs::COST, runs::SECONDS, runs::SECONDS_IN_PROBLEM])?;
     let our_keys = texts(&frame, runs::KEY)?;
     let recipes = texts(&frame, runs::RECIPE)?;
@@ -90,6 +107,12 @@ fn check_runs(
     let costs = frame.column(runs::COST).map_err(reason)?.is_not_null();
     let found = our_keys.iter().flatten().map(str::to_owned).zip(costs.iter().flatten());
     Ok((keys, found.collect()))
+}
+
+/// Whether all runs of a table were imported: a batch has no others beside.
+fn are_imported(frame: &DataFrame) -> bool {
+    let statuses = texts(frame, runs::STATUS);
+    statuses.is_ok_and(|all| all.iter().all(|status| status == Some(IMPORTED)))
 }
 
 /// Whether lists of numbers have none missing, points are finite, and all have their lengths.
@@ -123,8 +146,12 @@ fn check_lists(frame: &DataFrame, keys: &StringChunked, lengths: &Lengths) -> Re
 }
 
 /// Whether traces are those of the runs that found something, each in order.
-fn check_trace(rows: &DataFrame, found: &HashMap<String, bool>) -> Result<(), Reason> {
-    check_columns(rows, traces::COLUMNS, &[])?;
+fn check_trace(
+    rows: &DataFrame,
+    found: &HashMap<String, bool>,
+    nullable: &[&str],
+) -> Result<(), Reason> {
+    check_columns(rows, traces::COLUMNS, nullable)?;
     check_finite(rows, &[traces::COST])?;
     let keys = texts(rows, traces::KEY)?;
     let evaluations = rows.column(traces::EVALUATION).and_then(|c| c.u64()).map_err(reason)?;
@@ -155,8 +182,8 @@ fn check_trace(rows: &DataFrame, found: &HashMap<String, bool>) -> Result<(), Re
 }
 
 /// Whether clocks have a row for each of the traces.
-fn check_clock(rows: &DataFrame, trace: &DataFrame) -> Result<(), Reason> {
-    check_columns(rows, clocks::COLUMNS, &[])?;
+fn check_clock(rows: &DataFrame, trace: &DataFrame, nullable: &[&str]) -> Result<(), Reason> {
+    check_columns(rows, clocks::COLUMNS, nullable)?;
     check_finite(rows, &[clocks::SECONDS])?;
     let is_same = [traces::KEY, traces::EVALUATION].iter().all(|name| {
         let columns = (rows.column(name), trace.column(name));

@@ -38,8 +38,10 @@ use self::name::batch_name;
 use self::seal::sealed;
 use self::stack::Stack;
 use super::caught::caught;
+use super::foreign::{Foreign, ForeignRun};
 use super::plan::Plan;
 use super::record::Record;
+use super::specs::RunSpec;
 use crate::output::{FileError, create_folder, write_file};
 
 /// The tables, in the order in which a batch's are written.
@@ -139,6 +141,30 @@ impl Store {
         self.write_batch(&batch_name(&keys), tables)
     }
 
+    /// Stores the imported runs of a plan.
+    pub(in crate::experiment) fn write_imported(
+        &self,
+        plan: &Plan,
+        foreign: &Foreign,
+    ) -> Result<(), StoreError> {
+        let found = foreign.in_order_of(plan);
+        let runs: Vec<(&RunSpec, &ForeignRun)> = plan.runs.iter().zip(found).collect();
+        let mut rows = 0;
+        let batches = runs.chunk_by(|_, (_, next)| {
+            // Counted from the first run of a batch on.
+            rows += next.trace.len() + ROWS_PER_RUN;
+            let is_full = rows > ROWS_PER_BATCH;
+            rows = if is_full { 0 } else { rows };
+            !is_full
+        });
+        for batch in batches {
+            let record = |(spec, run): &(&RunSpec, &ForeignRun)| Record::imported(plan, spec, run);
+            let records = batch.iter().map(record).collect::<PolarsResult<Vec<_>>>()?;
+            self.write(records.iter())?;
+        }
+        Ok(())
+    }
+
     /// Writes a batch's tables, in the order of [`TABLES`].
     fn write_batch(&self, batch: &str, tables: [Stack; 3]) -> Result<(), StoreError> {
         self.forget(batch);
@@ -173,6 +199,10 @@ pub(crate) fn start_polars_threads() -> bool {
     let sorted = caught(|| Series::new("".into(), [1, 0]).sort(SortOptions::default()));
     matches!(sorted, Ok(Ok(_)))
 }
+
+/// An imported batch is written once it has so many rows, and each of its runs counts as some more.
+const ROWS_PER_BATCH: usize = 1_000_000;
+const ROWS_PER_RUN: usize = 100;
 
 /// Tables of fewer rows are not compressed: there is little to gain, and reading takes longer.
 const ROWS_TO_COMPRESS: usize = 1_000;

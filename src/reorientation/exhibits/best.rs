@@ -42,5 +42,5 @@ pub(in crate::reorientation) fn best_motions<'a>(results: &Results<'a>) -> Vec<B
             duration: results.measure(run, DURATION),
         })
     };
-    results.best_runs().into_iter().filter_map(motion).collect()
+    results.best_runs_with_points().into_iter().filter_map(motion).collect()
 }
