@@ -17,6 +17,8 @@ macro_rules! note {
 
 mod check;
 #[cfg(feature = "harness")]
+mod chosen;
+#[cfg(feature = "harness")]
 mod compact;
 #[cfg(feature = "harness")]
 mod export;
@@ -35,6 +37,8 @@ mod run;
 mod signals;
 #[cfg(feature = "harness")]
 mod status;
+#[cfg(feature = "harness")]
+mod submit;
 mod walls;
 #[cfg(feature = "harness")]
 mod warnings;
@@ -73,6 +77,9 @@ enum Verb {
     /// Run an experiment: every optimiser on every instance for every seed
     #[cfg(feature = "harness")]
     Run(run::Run),
+    /// Write the job that runs an experiment on a scheduler, in many small shards; with --go, start it
+    #[cfg(feature = "harness")]
+    Submit(submit::Submit),
     /// Say which runs of an experiment are done, failed or missing
     #[cfg(feature = "harness")]
     Status(status::Status),
@@ -133,6 +140,10 @@ enum CliError {
     #[error("{0}")]
     #[diagnostic(help("`--replace` replaces it; `--out DIR` puts the report elsewhere"))]
     Kept(String),
+    /// A scheduler did not take a job, or did not do it.
+    #[cfg(feature = "harness")]
+    #[error("the job was shown and not done: {0}")]
+    Job(String),
     /// No motion came of it.
     #[error("no motion found: no evaluation gave a finite cost")]
     #[diagnostic(help("are all limits, lengths, masses and boxes of a sensible size?"))]
@@ -258,6 +269,8 @@ pub fn main() -> ExitCode {
     let outcome = match cli.verb {
         #[cfg(feature = "harness")]
         Verb::Run(run) => run.execute(),
+        #[cfg(feature = "harness")]
+        Verb::Submit(submit) => submit.execute(),
         #[cfg(feature = "harness")]
         Verb::Status(status) => status.execute(),
         #[cfg(feature = "harness")]

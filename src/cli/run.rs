@@ -1,38 +1,26 @@
 //! `driftless run`.
 
-use std::num::{NonZeroU64, NonZeroUsize};
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::chosen::Chosen;
 use super::progress::Bar;
 use super::report::report;
 use super::results::start_all_threads;
 use super::warnings::warn_of_subjects;
-use super::{CliError, read_or, watch};
+use super::{CliError, watch};
 use crate::experiment::{
-    Damage, Experiment, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard,
-    ShardChoice, Store,
+    Damage, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard, ShardChoice, Store,
 };
-use crate::output::folder_of;
-use crate::registry::registry;
 use crate::report::Target;
 
 /// Run an experiment: every optimiser on every instance for every seed
 #[derive(Debug, Args)]
 pub(super) struct Run {
-    /// Experiment file; without one, a small experiment on the paper's task
-    #[arg(value_name = "EXPERIMENT.toml")]
-    file: Option<PathBuf>,
-    /// Folder for the results [default: results/NAME]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Number of seeds, instead of the file's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    seeds: Option<u64>,
-    /// Evaluations per run, instead of the file's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
-    budget: Option<u64>,
+    #[command(flatten)]
+    chosen: Chosen,
     /// Runs at a time [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
@@ -43,9 +31,6 @@ pub(super) struct Run {
     /// Do again what is already stored
     #[arg(long)]
     fresh: bool,
-    /// Start the programs that a file of results names
-    #[arg(long)]
-    trust: bool,
     /// Say nothing of runs that end as they should
     #[arg(long)]
     quiet: bool,
@@ -99,20 +84,12 @@ impl Run {
     pub(super) fn execute(self) -> Result<(), CliError> {
         start_all_threads()?;
         let shard = self.shard.map(told).transpose()?;
-        let (document, registry) =
-            (read_or(self.file.as_deref(), Experiment::embedded)?, registry());
-        let mut experiment = Experiment::read(&document, &registry)?;
-        if let Some(seeds) = self.seeds.and_then(NonZeroU64::new) {
-            experiment = experiment.with_seeds(seeds);
-        }
-        if let Some(evaluations) = self.budget.and_then(NonZeroU64::new) {
-            experiment = experiment.with_budget(evaluations);
-        }
-        self.tell_programs(&experiment)?;
+        let experiment = self.chosen.read()?;
+        self.chosen.tell_programs(&experiment)?;
         experiment.ask_programs()?;
         let plan = experiment.plan()?;
         warn_of_subjects(&plan);
-        let path = self.out.clone().unwrap_or_else(|| Path::new("results").join(&plan.name));
+        let path = self.chosen.folder(&plan);
         check_possible(&plan, &path)?;
         let folder = Folder::create(&path, plan)?;
         if let Some(earlier) = &folder.earlier {
@@ -144,36 +121,6 @@ impl Run {
                 Ok(())
             }
         }
-    }
-
-    /// Says which programs the experiment starts. Those that a file of results names may come from anybody, and are started only
-    /// where the user says so.
-    fn tell_programs(&self, experiment: &Experiment) -> Result<(), CliError> {
-        let mut told = Vec::new();
-        // A file need not say where it comes from.
-        let folder = self.file.as_deref().map(folder_of);
-        let mut is_from_results = folder.is_some_and(Folder::has_runs);
-        for (command, is_kept) in experiment.programs() {
-            is_from_results |= is_kept;
-            let program = format!("`{command}` in {}", command.folder().display());
-            if !told.contains(&program) {
-                told.push(program);
-            }
-        }
-        for program in &told {
-            note!("note: this experiment starts {program}");
-        }
-        if told.is_empty() || !is_from_results || self.trust {
-            return Ok(());
-        }
-        if confirmed("Start what these results name? [y/N] ") {
-            return Ok(());
-        }
-        Err(CliError::Usage {
-            message: "these programs are named by a file of results, which may come from anybody"
-                .to_owned(),
-            help: Some("look at them, and pass --trust to start them".to_owned()),
-        })
     }
 
     fn run_missing(&self, folder: &Folder, shard: Option<Shard>) -> Result<(), CliError> {
@@ -222,19 +169,6 @@ fn check_possible(plan: &Plan, path: &Path) -> Result<(), CliError> {
         Some([reason, ..]) => Err(RunError::foreign(reason).into()),
         _ => Ok(()),
     }
-}
-
-/// Asks the user, where there is one.
-fn confirmed(question: &str) -> bool {
-    use std::io::{IsTerminal as _, Write as _};
-    if !std::io::stdin().is_terminal() || !std::io::stderr().is_terminal() {
-        return false;
-    }
-    let mut line = String::new();
-    let mut errors = std::io::stderr();
-    let asked = errors.write_all(question.as_bytes()).and_then(|()| errors.flush());
-    asked.and_then(|()| std::io::stdin().read_line(&mut line)).is_ok()
-        && ["y", "yes"].contains(&line.trim().to_lowercase().as_str())
 }
 
 /// The shard that `--shard` means here.
