@@ -58,7 +58,7 @@ fn hyperqueue_with_a_worker_killed_and_one_added() {
     let mut workers: Vec<Process> = (0..WORKERS).map(|i| server.start_worker(i)).collect();
     // `hq` is on the PATH by run.sh.
     output(trial.submit("hyperqueue").env("HQ_SERVER_DIR", &server.folder));
-    trial.wait_for_half();
+    trial.wait_for_a_third();
 
     let of = |worker: &Process| -> Vec<Task> {
         let tasks = running(&trial.results()).into_iter();

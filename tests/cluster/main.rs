@@ -1,5 +1,5 @@
 //! An experiment that `driftless submit` gives to a scheduler as many small shards, four at a time, gives the tables of one
-//! process that nothing disturbed: also where a worker is killed half-way and another added. `run.sh` starts the schedulers.
+//! process that nothing disturbed: also where a worker is killed on the way and another added. `run.sh` starts the schedulers.
 #![cfg(feature = "harness")]
 
 mod hyperqueue;
@@ -63,9 +63,9 @@ impl Trial {
         Store::existing(&self.results()).keys().map_or(0, |keys| keys.len())
     }
 
-    /// Waits until the job is half done.
-    fn wait_for_half(&self) {
-        until("half of the runs are stored", || 2 * self.stored() >= self.keys.len());
+    /// Waits until the job is well on its way, with enough left for a worker that is added.
+    fn wait_for_a_third(&self) {
+        until("a third of the runs is stored", || 3 * self.stored() >= self.keys.len());
         println!("{} of {} runs are stored", self.stored(), self.keys.len());
     }
 
@@ -107,7 +107,7 @@ fn until(what: &str, is_so: impl Fn() -> bool) {
     let begun = Instant::now();
     while !is_so() {
         assert!(begun.elapsed() < PATIENCE, "waited in vain until {what}");
-        sleep(Duration::from_millis(20));
+        sleep(Duration::from_millis(50));
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fs::{read_to_string, write};
 use std::process::Stdio;
 
-use crate::tasks::running;
+use crate::tasks::{Task, running};
 use crate::{SHARDS, Trial, WORKERS, kill, until};
 
 #[test]
@@ -15,18 +15,16 @@ fn parallel_with_a_process_killed_and_one_added() {
     let mut submit = trial.submit("parallel");
     submit.arg("--").arg(format!("--jobs={}", jobs.display()));
     let mut parallel = submit.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    trial.wait_for_half();
+    trial.wait_for_a_third();
 
     let tasks = || running(&trial.results());
-    until("as many tasks run as may", || tasks().len() == WORKERS);
+    write(&jobs, (WORKERS + 1).to_string()).unwrap();
+    until("one more task runs", || tasks().len() == WORKERS + 1);
     let lost = tasks().remove(0);
     kill(lost.process);
     println!("process {} was killed within shard {}", lost.process, lost.shard);
-    let is_again =
-        || tasks().iter().any(|task| task.shard == lost.shard && task.process != lost.process);
-    until("its shard is done again", is_again);
-    write(&jobs, (WORKERS + 1).to_string()).unwrap();
-    until("one more task runs", || tasks().len() == WORKERS + 1);
+    let is_again = |task: &Task| task.shard == lost.shard && task.process != lost.process;
+    until("its shard is done again", || tasks().iter().any(is_again));
 
     assert!(parallel.wait().unwrap().success());
     // A header, and a line per task with exit status and signal in the seventh and eighth column.

@@ -48,7 +48,7 @@ fn slurm_with_a_node_lost_and_one_added() {
     let trial = Trial::new();
     let submitted = output(&mut trial.submit("slurm"));
     let job = submitted.rsplit(' ').next().unwrap().to_owned();
-    trial.wait_for_half();
+    trial.wait_for_a_third();
 
     let tasks = || running(&trial.results());
     let on = |name: &str| tasks().into_iter().find(|task| node(task).as_deref() == Some(name));
