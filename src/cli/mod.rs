@@ -77,7 +77,7 @@ enum Verb {
     /// Run an experiment: every optimiser on every instance for every seed
     #[cfg(feature = "harness")]
     Run(run::Run),
-    /// Write the job that runs an experiment on a scheduler, in many small shards; with --go, start it
+    /// Write the job that runs an experiment on a scheduler; with --go, start it
     #[cfg(feature = "harness")]
     Submit(submit::Submit),
     /// Say which runs of an experiment are done, failed or missing

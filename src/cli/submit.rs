@@ -21,7 +21,7 @@ pub(super) const WORKERS: usize = 8;
 /// How often GNU parallel tries a task; `HyperQueue` and Slurm begin those of lost workers again by themselves.
 const TRIES: u32 = 3;
 
-/// Write the job that runs an experiment on a scheduler, in many small shards; with --go, start it
+/// Write the job that runs an experiment on a scheduler; with --go, start it
 #[derive(Debug, Args)]
 pub(super) struct Submit {
     #[command(flatten)]
@@ -144,7 +144,10 @@ impl Submit {
         let quoted = |text: &str| shell_words::quote(text).into_owned();
         let (name, last, jobs) = (quoted(name), shards - 1, self.jobs);
         let logs = format!("{folder}/logs");
-        let options: String = self.options.iter().map(|o| format!(" {}", quoted(o))).collect();
+        let options = match &*self.options {
+            [] => String::new(),
+            options => format!(" {}", shell_words::join(options)),
+        };
         let workers = self.workers();
         let job = match self.to {
             Scheduler::HyperQueue => {

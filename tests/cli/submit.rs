@@ -59,10 +59,10 @@ fn jobs_are_shown_and_nothing_is_written() {
                 "-A",
                 "us all",
             ],
-            "mkdir -p HERE/50%/logs &&\n\
+            "mkdir -p 'HERE/50%/logs' &&\n\
              sbatch --job-name small --array 0-3%3 --cpus-per-task 1 --requeue --open-mode append \
-             --output HERE/50%%/logs/%A_%a.log '--time=4:00:00' -A 'us all' \\\n    \
-             --wrap 'exec DRIFTLESS run HERE/small.toml --out HERE/50% --jobs 1 --shard /4'\n",
+             --output 'HERE/50%%/logs/%A_%a.log' '--time=4:00:00' -A 'us all' \\\n    \
+             --wrap 'exec DRIFTLESS run HERE/small.toml --out '\\''HERE/50%'\\'' --jobs 1 --shard /4'\n",
         ),
         (
             &["--to", "parallel", "--workers", "3", "--budget", "100"],

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # How much of the workers' time is idle with few shards and with many, on GNU parallel: a line per number of shards.
 #   run.sh computing.toml 2 16 64       with one shard for each of 2 workers, with 16 and with 64
-#   run.sh waiting.toml 8 16 32 64
+#   run.sh waiting.toml 8 32 128
 # Idle is what remains of workers × time from the first start to the last end without the time of tasks, as GNU parallel logs them.
 # What others do on the machine changes both, and the share little.
 set -euo pipefail
