@@ -50,7 +50,7 @@ figures:
 notebooks:
     notebooks/run.sh --check
 
-# an array of tasks on a Slurm of its own, killed and requeued; skipped where Slurm is not installed
+# jobs on HyperQueue, GNU parallel and Slurm, workers lost and added; a scheduler that is not installed is skipped
 cluster:
     tests/cluster/run.sh
 

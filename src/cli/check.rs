@@ -81,6 +81,7 @@ impl Check {
 #[cfg(feature = "harness")]
 fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError> {
     use super::run::default_jobs;
+    use super::submit::WORKERS;
     use super::warnings::{warn_of_budgets, warn_of_subjects};
     use crate::exhibit::words::plural;
     use crate::experiment::{self, Experiment};
@@ -107,11 +108,28 @@ fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError>
     );
     if estimate {
         let jobs = default_jobs();
-        let time = experiment::estimate(&plan, jobs)?.max(Duration::from_secs(1));
+        let estimate = experiment::estimate(&plan, jobs)?;
+        let time = estimate.time(jobs).max(Duration::from_secs(1));
         let threads = if jobs == 1 { "thread" } else { "threads" };
         say!("# about {} on {jobs} {threads} (measured just now)", HumanDuration(time));
+        let shards = estimate.shards(WORKERS, 1);
+        if shards.most > 1 {
+            say!("# {}", words_for_shards(shards, WORKERS));
+        }
     }
     Ok(())
+}
+
+/// How many shards make sense.
+#[cfg(feature = "harness")]
+fn words_for_shards(sensible: crate::experiment::Sensible, workers: usize) -> String {
+    let crate::experiment::Sensible { fewest, most, idle_with_one_each, .. } = sensible;
+    let idle = 100.0 * idle_with_one_each;
+    let range = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
+    format!(
+        "{range} shards make sense for {workers} workers of a scheduler; with one each they would be idle for {idle:.0} % \
+         of the time"
+    )
 }
 
 #[cfg(not(feature = "harness"))]

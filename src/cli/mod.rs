@@ -17,6 +17,8 @@ macro_rules! note {
 
 mod check;
 #[cfg(feature = "harness")]
+mod chosen;
+#[cfg(feature = "harness")]
 mod compact;
 #[cfg(feature = "harness")]
 mod export;
@@ -40,6 +42,8 @@ mod serve;
 mod signals;
 #[cfg(feature = "harness")]
 mod status;
+#[cfg(feature = "harness")]
+mod submit;
 #[cfg(feature = "harness")]
 mod trust;
 mod walls;
@@ -80,6 +84,9 @@ enum Verb {
     /// Run an experiment: every optimiser on every instance for every seed
     #[cfg(feature = "harness")]
     Run(run::Run),
+    /// Write the job that runs an experiment on a scheduler; with --go, start it
+    #[cfg(feature = "harness")]
+    Submit(submit::Submit),
     /// Say which runs of an experiment are done, failed or missing
     #[cfg(feature = "harness")]
     Status(status::Status),
@@ -149,6 +156,10 @@ enum CliError {
     #[error("{0}")]
     #[diagnostic(help("`--replace` replaces it; `--out DIR` puts the report elsewhere"))]
     Kept(String),
+    /// A scheduler did not take a job, or did not do it.
+    #[cfg(feature = "harness")]
+    #[error("the job was shown and not done: {0}")]
+    Job(String),
     /// No motion came of it.
     #[error("no motion found: no evaluation gave a finite cost")]
     #[diagnostic(help("are all limits, lengths, masses and boxes of a sensible size?"))]
@@ -281,6 +292,8 @@ pub fn main() -> ExitCode {
     let outcome = match cli.verb {
         #[cfg(feature = "harness")]
         Verb::Run(run) => run.execute(),
+        #[cfg(feature = "harness")]
+        Verb::Submit(submit) => submit.execute(),
         #[cfg(feature = "harness")]
         Verb::Status(status) => status.execute(),
         #[cfg(feature = "harness")]

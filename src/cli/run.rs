@@ -1,39 +1,28 @@
 //! `driftless run`.
 
 use std::collections::HashSet;
-use std::num::{NonZeroU64, NonZeroUsize};
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::chosen::Chosen;
 use super::progress::Bar;
 use super::report::report;
 use super::results::start_all_threads;
-use super::trust::tell_programs;
 use super::warnings::warn_of_subjects;
-use super::{CliError, read_or, watch};
+use super::{CliError, watch};
 use crate::experiment::{
-    Damage, Experiment, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard,
-    ShardChoice, Store, standing,
+    Damage, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard, ShardChoice, Store,
+    standing,
 };
-use crate::registry::registry;
 use crate::report::Target;
 
 /// Run an experiment: every optimiser on every instance for every seed
 #[derive(Debug, Args)]
 pub(super) struct Run {
-    /// Experiment file; without one, a small experiment on the paper's task
-    #[arg(value_name = "EXPERIMENT.toml")]
-    file: Option<PathBuf>,
-    /// Folder for the results [default: results/NAME]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Number of seeds, instead of the file's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    seeds: Option<u64>,
-    /// Evaluations per run, instead of the file's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
-    budget: Option<u64>,
+    #[command(flatten)]
+    chosen: Chosen,
     /// Runs at a time [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
@@ -47,9 +36,6 @@ pub(super) struct Run {
     /// Do again what is stored and has failed
     #[arg(long)]
     retry: bool,
-    /// Start the programs that a file of results names, now and later
-    #[arg(long)]
-    trust: bool,
     /// Say nothing of runs that end as they should
     #[arg(long)]
     quiet: bool,
@@ -103,25 +89,12 @@ impl Run {
     pub(super) fn execute(self) -> Result<(), CliError> {
         start_all_threads()?;
         let shard = self.shard.map(told).transpose()?;
-        let (document, registry) =
-            (read_or(self.file.as_deref(), Experiment::embedded)?, registry());
-        let mut experiment = Experiment::read(&document, &registry)?;
-        if let Some(from) = experiment.imported() {
-            let message = format!("these results were imported, from {from}, and cannot be run");
-            let help = Some("`driftless report` reports them, also beside others".to_owned());
-            return Err(CliError::Usage { message, help });
-        }
-        if let Some(seeds) = self.seeds.and_then(NonZeroU64::new) {
-            experiment = experiment.with_seeds(seeds);
-        }
-        if let Some(evaluations) = self.budget.and_then(NonZeroU64::new) {
-            experiment = experiment.with_budget(evaluations);
-        }
-        tell_programs(&experiment, self.file.as_deref(), self.trust)?;
+        let experiment = self.chosen.read()?;
+        self.chosen.tell_programs(&experiment)?;
         experiment.ask_programs()?;
         let plan = experiment.plan()?;
         warn_of_subjects(&plan);
-        let path = self.out.clone().unwrap_or_else(|| Path::new("results").join(&plan.name));
+        let path = self.chosen.folder(&plan);
         check_possible(&plan, &path)?;
         let folder = Folder::create(&path, plan)?;
         if let Some(earlier) = &folder.earlier {

@@ -11,12 +11,12 @@ use crate::output::folder_of;
 use crate::process::Command;
 
 /// Says which programs an experiment starts. Those that a file of results names are started only where the user says so, by
-/// `--trust`, now or once before.
+/// `--trust`, now or once before. Whether there are any.
 pub(super) fn tell_programs(
     experiment: &Experiment,
     file: Option<&Path>,
     is_trusted: bool,
-) -> Result<(), CliError> {
+) -> Result<bool, CliError> {
     let mut told = Vec::new();
     let mut identity = String::new();
     // A file need not say where it comes from.
@@ -32,16 +32,13 @@ pub(super) fn tell_programs(
     for program in &told {
         note!("note: this experiment starts {program}");
     }
-    if told.is_empty() || !is_from_results {
-        return Ok(());
-    }
     let digest = sha256(identity.as_bytes());
-    if is_remembered(&digest) {
-        return Ok(());
+    if told.is_empty() || !is_from_results || is_remembered(&digest) {
+        return Ok(!told.is_empty());
     }
     if is_trusted || confirmed("Start what these results name? [y/N] ") {
         remember(&digest);
-        return Ok(());
+        return Ok(true);
     }
     Err(CliError::Usage {
         message: "these programs are named by a file of results, which may come from anybody"

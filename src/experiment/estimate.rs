@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
+use super::balance::{Sensible, sensible};
 use super::caught::caught;
 use super::plan::Plan;
 use super::runner::RunError;
@@ -27,12 +28,22 @@ const WITH_DERIVATIVES: u32 = 4;
 /// Instances of each kind that are tried.
 const TRIED: usize = 3;
 
-/// Wall time that the runs of a plan take on so many threads, from trials of a few seconds in all.
+/// What a run is taken to last where no trial tells, as where all runs start programs.
+const UNKNOWN: Duration = Duration::from_mins(1);
+
+/// How long the runs of a plan take.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    /// Of every run, in the order of the plan; none where it was not tried.
+    runs: Vec<Option<Duration>>,
+}
+
+/// How long the runs of a plan take, from trials of a few seconds in all, as many at a time as `jobs` says.
 ///
 /// Every optimiser is tried on a few instances with each number of variables. A run that ends within
 /// its trial takes what it took; of another what it spent of its budget is scaled up to all of it,
 /// which is too much for one that would have ended earlier.
-pub fn estimate(plan: &Plan, jobs: usize) -> Result<Duration, RunError> {
+pub fn estimate(plan: &Plan, jobs: usize) -> Result<Estimate, RunError> {
     let trials = choose(plan);
     let weights = trials.iter().map(|run| weight(plan, run)).sum::<u32>().max(1);
     let share = ALLOWANCE * u32::try_from(jobs).unwrap_or(u32::MAX).min(1024) / weights;
@@ -49,13 +60,31 @@ pub fn estimate(plan: &Plan, jobs: usize) -> Result<Duration, RunError> {
         *sum += seconds;
         *number += 1.0;
     }
-    let each = plan.runs.iter().filter_map(|run| found.get(&kind(plan, run)));
-    let (mut all, mut longest) = (0.0, 0.0_f64);
-    for (sum, number) in each {
-        all += sum / number;
-        longest = longest.max(sum / number);
+    let mean = |(sum, number): &(f64, f64)| {
+        Duration::try_from_secs_f64(sum / number).unwrap_or(Duration::MAX)
+    };
+    let runs = plan.runs.iter().map(|run| found.get(&kind(plan, run)).map(mean)).collect();
+    Ok(Estimate { runs })
+}
+
+impl Estimate {
+    /// Wall time of all runs that were tried on so many threads.
+    pub fn time(&self, threads: usize) -> Duration {
+        let tried = || self.runs.iter().flatten();
+        let all = tried().map(Duration::as_secs_f64).sum::<f64>() / threads as f64;
+        let all = Duration::try_from_secs_f64(all).unwrap_or(Duration::MAX);
+        all.max(tried().max().copied().unwrap_or_default())
     }
-    Ok(Duration::try_from_secs_f64((all / jobs as f64).max(longest)).unwrap_or(Duration::MAX))
+
+    /// How many shards make sense for so many workers that do `jobs` runs at a time each. Runs that were not tried are taken to
+    /// last as long as the mean of the others.
+    pub fn shards(&self, workers: usize, jobs: usize) -> Sensible {
+        let tried = self.runs.iter().flatten().count();
+        let all: f64 = self.runs.iter().flatten().map(Duration::as_secs_f64).sum();
+        let mean = Duration::try_from_secs_f64(all / tried as f64).unwrap_or(UNKNOWN);
+        let runs: Vec<Duration> = self.runs.iter().map(|run| run.unwrap_or(mean)).collect();
+        sensible(&runs, workers, jobs)
+    }
 }
 
 /// What runs have in common that take about as long: optimiser, kind of problem, number of variables

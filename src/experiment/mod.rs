@@ -1,5 +1,6 @@
 //! From an experiment to stored runs: file, plan, runner, store.
 
+mod balance;
 mod beside;
 mod budget;
 mod caught;
@@ -32,8 +33,9 @@ mod subject;
 mod targets;
 mod value;
 
+pub use balance::Sensible;
 pub use entrant::Entrant;
-pub use estimate::estimate;
+pub use estimate::{Estimate, estimate};
 pub use file::Experiment;
 pub use folder::{Folder, FolderError, Options};
 pub use foreign::{Foreign, ForeignOptimiser, ForeignProblem, ForeignRun, ForeignStep};

@@ -19,6 +19,8 @@ mod shards;
 #[cfg(feature = "harness")]
 mod splines;
 #[cfg(feature = "harness")]
+mod submit;
+#[cfg(feature = "harness")]
 mod survival;
 #[cfg(feature = "harness")]
 mod sweeps;

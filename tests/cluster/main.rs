@@ -1,111 +1,91 @@
-//! An experiment as a Slurm array, two of its tasks killed and begun again, gives the tables of a run that
-//! nothing disturbed. `run.sh` starts a Slurm for it.
+//! An experiment that `driftless submit` gives to a scheduler as many small shards, four at a time, gives the tables of one
+//! process that nothing disturbed: also where a worker is killed on the way and another added. `run.sh` starts the schedulers.
 #![cfg(feature = "harness")]
 
+mod hyperqueue;
+mod parallel;
 mod slurm;
 mod tables;
+mod tasks;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::LazyLock;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
-use driftless::experiment::Experiment;
+use driftless::experiment::{Experiment, Store};
 use driftless::input::Document;
 use driftless::registry;
-use slurm::{Array, output, until};
 use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_driftless");
 const EXPERIMENT: &str = "tests/cluster/experiment.toml";
-/// Tasks of the array.
-const TASKS: usize = 4;
-/// The one whose program is killed.
-const KILLED: usize = 1;
-/// The one that is told to end and begin again.
-const REQUEUED: usize = 2;
+/// Where results go: a name that a shell would take apart.
+const RESULTS: &str = "it's \"half\" done";
+/// Tasks of each job.
+const SHARDS: usize = 16;
+/// Workers that a job begins with.
+const WORKERS: usize = 4;
+/// Longer than anything here takes.
+const PATIENCE: Duration = Duration::from_mins(5);
 
-/// The experiment as an array, in a folder of its own.
+/// The experiment as a job, in a folder of its own.
 struct Trial {
     folder: TempDir,
-    tasks: Array,
-    /// The runs of each task, by key.
-    shares: [Vec<String>; TASKS],
+    /// The runs, by key.
+    keys: Vec<String>,
 }
 
 impl Trial {
-    fn submit() -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        // The script calls `driftless`, and Slurm hands the environment on.
-        let bin = Path::new(PROGRAM).parent().unwrap().display();
-        let path = format!("--export=ALL,PATH={bin}:{}", std::env::var("PATH").unwrap());
-        let tasks = Array::submit(
-            &["--cpus-per-task=1", &path],
-            &here("docs/driftless.sbatch"),
-            &[here(EXPERIMENT).to_str().unwrap(), "--out", "results"],
-            folder.path(),
-        );
-        Self { folder, tasks, shares: shares() }
+    fn new() -> Self {
+        let document = Document::read(&here(EXPERIMENT)).unwrap();
+        let plan = Experiment::read(&document, &registry()).unwrap().plan().unwrap();
+        let mut keys: Vec<String> = plan.runs.into_iter().map(|run| run.key).collect();
+        keys.sort();
+        Self { folder: tempfile::tempdir().unwrap(), keys }
     }
 
     fn results(&self) -> PathBuf {
-        self.folder.path().join("results")
+        self.folder.path().join(RESULTS)
     }
 
-    fn log(&self, task: usize) -> String {
-        let name = format!("driftless-{}_{task}.log", self.tasks.id());
-        std::fs::read_to_string(self.folder.path().join(name)).unwrap()
+    /// The command that submits the job, to which options of the scheduler's may be added.
+    fn submit(&self, scheduler: &str) -> Command {
+        let mut submit = Command::new(PROGRAM);
+        submit.arg("submit").arg(here(EXPERIMENT)).args(["--out", RESULTS, "--to", scheduler]);
+        submit.args(["--shards", &SHARDS.to_string(), "--workers", &WORKERS.to_string(), "--go"]);
+        submit.current_dir(self.folder.path());
+        submit
     }
 
-    /// How many of a task's runs are stored.
-    fn stored(&self, task: usize) -> usize {
-        let path = |key: &String| self.results().join(format!("runs/{key}.parquet"));
-        self.shares[task].iter().filter(|key| path(key).exists()).count()
+    fn stored(&self) -> usize {
+        Store::existing(&self.results()).keys().map_or(0, |keys| keys.len())
     }
 
-    /// Cuts two tasks in the midst of their runs and has them begin again; how many runs each task had
-    /// stored by then.
-    fn disturb(&self) -> [Option<usize>; TASKS] {
-        for task in [KILLED, REQUEUED] {
-            until("a task has stored some runs", || self.stored(task) >= 3);
+    /// Waits until the job is well on its way, with enough left for a worker that is added.
+    fn wait_for_a_third(&self) {
+        until("a third of the runs is stored", || 3 * self.stored() >= self.keys.len());
+        println!("{} of {} runs are stored", self.stored(), self.keys.len());
+    }
+
+    /// Every run is stored once, and all is as it is where nothing was disturbed.
+    fn compare(&self) {
+        static ALONE: LazyLock<TempDir> = LazyLock::new(|| {
+            let folder = tempfile::tempdir().unwrap();
+            let mut run = Command::new(PROGRAM);
+            output(run.arg("run").arg(here(EXPERIMENT)).arg("--out").arg(folder.path()));
+            folder
+        });
+        let stored = tables::keys(&tables::read(&self.results(), "runs"));
+        assert_eq!(stored, self.keys, "every run once");
+        for table in ["runs", "traces", "clocks"] {
+            let [alone, job] =
+                [ALONE.path(), &self.results()].map(|results| tables::read(results, table));
+            println!("{table}: {} rows, {} columns compared", alone.height(), alone.width());
+            assert!(alone.equals_missing(&job), "{table} differ:\n{alone}\n{job}");
         }
-        self.tasks.kill(KILLED);
-        self.tasks.requeue(REQUEUED);
-        until("the task is killed", || self.tasks.state(KILLED) == "FAILED");
-        until("the task has ended", || self.tasks.state(REQUEUED) == "PENDING");
-        let mut stored = [None; TASKS];
-        for task in [KILLED, REQUEUED] {
-            let (count, all) = (self.stored(task), self.shares[task].len());
-            println!("task {task} was cut when {count} of its {all} runs were stored");
-            assert!(count < all, "nothing was left to do");
-            stored[task] = Some(count);
-        }
-        self.tasks.requeue(KILLED);
-        stored
-    }
-
-    fn finish(&self) {
-        until("all tasks have ended", || self.tasks.is_over());
-        for task in 0..TASKS {
-            assert_eq!(self.tasks.state(task), "COMPLETED", "{}", self.log(task));
-        }
-    }
-
-    /// Every task took its part from Slurm, those that were cut went on where they had been, and the last
-    /// of all told the result.
-    fn check_logs(&self, stored: [Option<usize>; TASKS]) {
-        for (task, stored) in stored.into_iter().enumerate() {
-            let log = self.log(task);
-            let told = format!("shard {task}/{TASKS}, from SLURM_ARRAY_TASK_ID");
-            let starts = log.lines().filter(|line| *line == told).count();
-            assert_eq!(starts, if stored.is_some() { 2 } else { 1 }, "{log}");
-            if let Some(stored) = stored {
-                let all = self.shares[task].len();
-                let resumed = format!("{stored} of {all} runs are stored already");
-                assert!(log.contains(&resumed), "{log}");
-            }
-        }
-        let log = self.log(REQUEUED);
-        assert!(log.contains("interrupted: "), "{log}");
-        assert!((0..TASKS).any(|task| self.log(task).contains("best motion")), "no summary");
+        assert!(self.results().join("report.html").is_file(), "no task took itself for the last");
     }
 }
 
@@ -114,30 +94,23 @@ fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// The runs of each task: those at every fourth place of the plan.
-fn shares() -> [Vec<String>; TASKS] {
-    let document = Document::read(&here(EXPERIMENT)).unwrap();
-    let plan = Experiment::read(&document, &registry()).unwrap().plan().unwrap();
-    let keys: Vec<String> = plan.runs.into_iter().map(|run| run.key).collect();
-    std::array::from_fn(|task| keys.iter().skip(task).step_by(TASKS).cloned().collect())
+/// Runs a command that has to succeed; what it prints.
+fn output(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {}\n{error}", output.status);
+    String::from_utf8(output.stdout).unwrap().trim().to_owned()
 }
 
-#[test]
-#[ignore = "needs a Slurm: tests/cluster/run.sh"]
-fn a_disturbed_array_gives_the_tables_of_an_undisturbed_run() {
-    let alone = tempfile::tempdir().unwrap();
-    output(Command::new(PROGRAM).arg("run").arg(here(EXPERIMENT)).arg("--out").arg(alone.path()));
-    let trial = Trial::submit();
-    let stored = trial.disturb();
-    trial.finish();
-    trial.check_logs(stored);
-    let mut keys = trial.shares.concat();
-    keys.sort();
-    assert_eq!(tables::keys(&tables::read(&trial.results(), "runs")), keys, "every run once");
-    for table in ["runs", "traces", "clocks"] {
-        let [alone, array] =
-            [alone.path(), &trial.results()].map(|results| tables::read(results, table));
-        println!("{table}: {} rows, {} columns compared", alone.height(), alone.width());
-        assert!(alone.equals_missing(&array), "{table} differ:\n{alone}\n{array}");
+/// Waits until something is so.
+fn until(what: &str, is_so: impl Fn() -> bool) {
+    let begun = Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < PATIENCE, "waited in vain until {what}");
+        sleep(Duration::from_millis(50));
     }
+}
+
+fn kill(process: u32) {
+    output(Command::new("kill").args(["-KILL", &process.to_string()]));
 }

@@ -1,77 +1,81 @@
-//! Slurm's commands, as far as the test needs them.
+//! Slurm: five nodes of one processor on one machine, of which `run.sh` starts the first four.
 
 use std::path::Path;
-use std::process::Command;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::process::{Child, Command, Stdio};
 
-/// Longer than anything here takes.
-const PATIENCE: Duration = Duration::from_mins(5);
+use crate::tasks::{Task, running};
+use crate::{SHARDS, Trial, kill, output, until};
 
-/// Runs a command that has to succeed; what it prints.
-pub(crate) fn output(command: &mut Command) -> String {
-    let output = command.output().unwrap();
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{command:?}: {}\n{error}", output.status);
-    String::from_utf8(output.stdout).unwrap().trim().to_owned()
-}
+/// The daemon of a node, which ends with the test.
+struct Node(Child);
 
-/// Waits until something is so.
-pub(crate) fn until(what: &str, is_so: impl Fn() -> bool) {
-    let begun = Instant::now();
-    while !is_so() {
-        assert!(begun.elapsed() < PATIENCE, "waited in vain until {what}");
-        sleep(Duration::from_millis(50));
+impl Node {
+    fn start(name: &str) -> Self {
+        let mut slurmd = Command::new("slurmd");
+        slurmd.args(["-D", "-N", name]).stdout(Stdio::null()).stderr(Stdio::null());
+        Self(slurmd.spawn().unwrap())
     }
 }
 
-/// An array of tasks.
-pub(crate) struct Array(String);
-
-impl Array {
-    /// Submits a script with options of Slurm's and arguments of its own, to be run in a folder.
-    pub(crate) fn submit(options: &[&str], script: &Path, args: &[&str], folder: &Path) -> Self {
-        let mut sbatch = Command::new("sbatch");
-        sbatch.arg("--parsable").args(options).arg(script).args(args).current_dir(folder);
-        Self(output(&mut sbatch))
+impl Drop for Node {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
+}
 
-    pub(crate) fn id(&self) -> &str {
-        &self.0
-    }
+/// Which node a task runs on.
+fn node(task: &Task) -> Option<String> {
+    task.variable("SLURMD_NODENAME")
+}
 
-    fn task(&self, index: usize) -> String {
-        format!("{}_{index}", self.0)
-    }
+/// What the queue says of a job, a line per task.
+fn queue(job: &str, field: &str) -> String {
+    output(Command::new("squeue").args([
+        "--noheader",
+        "--states=all",
+        "--array",
+        "--format",
+        field,
+        "--jobs",
+        job,
+    ]))
+}
 
-    fn show(&self, index: usize, field: &str) -> String {
-        let mut squeue = Command::new("squeue");
-        squeue.args(["--noheader", "--states=all", "--format", field, "--jobs", &self.task(index)]);
-        output(&mut squeue)
-    }
+#[test]
+#[ignore = "needs a Slurm: tests/cluster/run.sh"]
+fn slurm_with_a_node_lost_and_one_added() {
+    let trial = Trial::new();
+    let submitted = output(&mut trial.submit("slurm"));
+    let job = submitted.rsplit(' ').next().unwrap().to_owned();
+    trial.wait_for_a_third();
 
-    /// Such as `PENDING`, `RUNNING`, `FAILED` or `COMPLETED`.
-    pub(crate) fn state(&self, index: usize) -> String {
-        self.show(index, "%T")
-    }
+    let tasks = || running(&trial.results());
+    let on = |name: &str| tasks().into_iter().find(|task| node(task).as_deref() == Some(name));
+    until("a node has a task", || on("node0").is_some());
+    let lost = on("node0").unwrap();
+    let number = lost.variable("SLURM_ARRAY_TASK_ID").unwrap();
+    // A node that is lost takes its daemon, and that of the task, and the task with it.
+    let folder = std::env::var("DRIFTLESS_SLURM").expect("run by tests/cluster/run.sh");
+    let daemon = std::fs::read_to_string(Path::new(&folder).join("node0.pid")).unwrap();
+    kill(daemon.trim().parse().unwrap());
+    kill(lost.parent().unwrap());
+    kill(lost.process);
+    output(Command::new("scontrol").args([
+        "update",
+        "nodename=node0",
+        "state=down",
+        "reason=lost",
+    ]));
+    println!("node0 was lost within task {number}");
+    let _node = Node::start("node4");
+    until("the new node has a task", || on("node4").is_some());
 
-    /// Whether no task waits or runs.
-    pub(crate) fn is_over(&self) -> bool {
-        output(Command::new("squeue").args(["--noheader", "--jobs", &self.0])).is_empty()
-    }
-
-    /// Ends a task, if it runs, and has it begin again.
-    pub(crate) fn requeue(&self, index: usize) {
-        output(Command::new("scontrol").args(["requeue", &self.task(index)]));
-    }
-
-    /// Kills a task's program; Slurm has no hand in it.
-    pub(crate) fn kill(&self, index: usize) {
-        let job = self.show(index, "%A");
-        let processes = output(Command::new("scontrol").args(["listpids", &job, "node"]));
-        // Process, job, step, and the number of the task within the step.
-        let program = processes.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
-        let program = program.into_iter().find(|process| process[2..4] == ["batch", "0"]).unwrap();
-        output(Command::new("kill").args(["-KILL", program[0]]));
-    }
+    until("all tasks have ended", || queue(&job, "%T").lines().all(|state| state == "COMPLETED"));
+    let log = trial.results().join(format!("logs/{job}_{number}.log"));
+    let log = std::fs::read_to_string(log).unwrap();
+    let told = format!("shard {number}/{SHARDS}, from SLURM_ARRAY_TASK_ID");
+    assert_eq!(log.lines().filter(|line| *line == told).count(), 2, "{log}");
+    assert_eq!(queue(&job, "%T").lines().count(), SHARDS);
+    trial.compare();
 }
