@@ -3,15 +3,20 @@
     import door
 
     with door.Problem("my solver") as problem:
-        cost = problem([0.1, 0.2])
-        costs = problem.batch([[0.1, 0.2], [0.3, 0.4]])
-        cost, slopes = problem.subgradient([0.1, 0.2])
+        cost, costs = problem(x), problem.batch(points)
+        cost, slopes = problem.subgradient(x)
 
 Once the budget is spent, a call raises `Spent`, which ends the `with` block. It is no `Exception`, so that solvers let it through.
 """
 
 import json
+import math
 import sys
+
+
+def numbers(x):
+    """A point for JSON, which knows no NaN."""
+    return [float(value) if math.isfinite(value) else str(float(value)) for value in x]
 
 
 class Spent(BaseException):
@@ -29,16 +34,16 @@ class Problem:
         self._say({"hello": {"name": name, "version": version}})
 
     def __call__(self, x):
-        return float(self._ask("x", [float(value) for value in x])["cost"])
+        return self.batch([x])[0]
 
     def batch(self, points):
-        costs = self._ask("x", [[float(value) for value in x] for x in points])["cost"]
+        costs = self._ask("x", [numbers(x) for x in points])["cost"]
         if len(costs) < len(points):
             raise Spent
         return [float(cost) for cost in costs]
 
     def subgradient(self, x):
-        answer = self._ask("subgradient", [float(value) for value in x])
+        answer = self._ask("subgradient", numbers(x))
         return float(answer["cost"]), [float(slope) for slope in answer["subgradient"]]
 
     def _ask(self, what, argument):

@@ -8,15 +8,17 @@ randn("twister", opening.seed);
 best = (lower + upper) / 2;
 least = Inf;
 radius = 0.5;
+row = ["[" strjoin(repmat({"%.17g"}, 1, numel(lower)), ",") "]"];
 printf('{"hello":{"name":"gaussian-search","version":"1"}}\n');
 fflush(stdout);
 while true
   points = best + radius * (upper - lower) .* randn(count, numel(lower));
   points = min(max(points, lower), upper);
-  printf("%s\n", jsonencode(struct("x", points)));
+  rows = sprintf([row ","], points');
+  printf('{"x":[%s]}\n', rows(1:end-1));
   fflush(stdout);
   % Costs that are not finite come as texts.
-  answer = jsondecode(strrep(strrep(input("", "s"), '"inf"', "1e999"), '"nan"', "null"));
+  answer = jsondecode(strrep(strrep(input("", "s"), '"inf"', "Infinity"), '"nan"', "NaN"));
   if isfield(answer, "stop")
     break
   end

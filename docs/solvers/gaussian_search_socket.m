@@ -16,13 +16,15 @@ seed(opening.seed);
 best = (lower + upper) / 2;
 least = Inf;
 radius = 0.5;
+row = ['[' strjoin(repmat({'%.17g'}, 1, numel(lower)), ',') ']'];
 writeline(peer, '{"hello":{"name":"gaussian-search","version":"1"}}');
 while true
     points = best + radius * (upper - lower) .* randn(count, numel(lower));
     points = min(max(points, lower), upper);
-    writeline(peer, jsonencode(struct("x", points)));
+    rows = sprintf([row ','], points');
+    writeline(peer, ['{"x":[' rows(1:end-1) ']}']);
     % Costs that are not finite come as texts.
-    answer = jsondecode(strrep(strrep(char(readline(peer)), '"inf"', '1e999'), '"nan"', 'null'));
+    answer = jsondecode(strrep(strrep(char(readline(peer)), '"inf"', 'Infinity'), '"nan"', 'NaN'));
     if isfield(answer, "stop")
         break
     end

@@ -111,7 +111,9 @@ fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError>
         let estimate = experiment::estimate(&plan, jobs)?;
         let time = estimate.time(jobs).max(Duration::from_secs(1));
         let threads = if jobs == 1 { "thread" } else { "threads" };
-        say!("# about {} on {jobs} {threads} (measured just now)", HumanDuration(time));
+        let rest =
+            if estimate.is_partial() { ", without the runs that start programs" } else { "" };
+        say!("# about {} on {jobs} {threads} (measured just now){rest}", HumanDuration(time));
         let shards = estimate.shards(WORKERS, 1);
         if shards.most > 1 {
             say!("# {}", words_for_shards(shards, WORKERS));

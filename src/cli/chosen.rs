@@ -54,8 +54,8 @@ impl Chosen {
         self.out.clone().unwrap_or_else(|| Path::new("results").join(&plan.name))
     }
 
-    /// Says which programs the experiment starts, and whether there are any.
-    pub(super) fn tell_programs(&self, experiment: &Experiment) -> Result<bool, CliError> {
+    /// Says which programs the experiment starts.
+    pub(super) fn tell_programs(&self, experiment: &Experiment) -> Result<(), CliError> {
         tell_programs(experiment, self.file.as_deref(), self.trust)
     }
 }

@@ -12,7 +12,7 @@ use super::plan::{search, warn_of_task};
 use super::progress::Bar;
 use super::walls::Walls;
 use super::{CliError, read_or, shown, start_worker_threads, watch};
-use crate::process::{Client, Socket};
+use crate::process::{Client, Socket, TOKEN};
 use crate::reorientation::{
     BestKnown, Formulated, Formulation, SearchedFamily, TaskFile, TaskProblem,
 };
@@ -37,7 +37,7 @@ pub(super) struct Serve {
     budget: u64,
     /// Listen on a port of 127.0.0.1, or on any that is free, instead of standard input and output. Who connects has to show
     /// the token of the variable `DRIFTLESS_TOKEN` or, if that is not set, the one that is printed
-    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "0")]
+    #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "0")]
     listen: Option<u16>,
     #[command(flatten)]
     files: MotionFiles,
@@ -102,8 +102,14 @@ impl Serve {
     /// The other end of the line.
     fn client(&self) -> Result<Client, CliError> {
         let Some(port) = self.listen else { return Ok(Client::on_standard_streams()?) };
-        let socket = Socket::bind(port)?;
-        note!("listening on {}, token {}", socket.address(), socket.token());
+        let own = std::env::var(TOKEN).ok().filter(|token| !token.is_empty());
+        let is_known = own.is_some();
+        let socket = Socket::bind(port, own)?;
+        if is_known {
+            note!("listening on {}, token in {TOKEN}", socket.address());
+        } else {
+            note!("listening on {}, token {}", socket.address(), socket.token());
+        }
         Ok(Client::on_socket(socket)?)
     }
 

@@ -32,8 +32,8 @@ pub(super) struct Submit {
     /// Shards, each a task of the scheduler's [default: as many as make sense]
     #[arg(long, value_name = "N")]
     shards: Option<NonZeroUsize>,
-    /// Tasks at a time [default: of GNU parallel as many as there are processors for; of others no limit, and shards
-    /// that suit 8]
+    /// Tasks at a time, by which the default of --shards goes; HyperQueue has as many as its workers take [default: of GNU
+    /// parallel as many as there are processors for; of others no limit, and shards that suit 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     workers: Option<u16>,
     /// Runs at a time in each task, and its processors
@@ -62,14 +62,15 @@ impl Submit {
     pub(super) fn execute(self) -> Result<(), CliError> {
         start_worker_threads()?;
         let experiment = self.chosen.read()?;
-        let has_programs = self.chosen.tell_programs(&experiment)?;
+        // Tasks, which have nobody to ask, go by what is remembered of it.
+        self.chosen.tell_programs(&experiment)?;
         let plan = experiment.plan()?;
         warn_of_subjects(&plan);
         warn_of_budgets(&plan);
         let folder = self.chosen.folder(&plan);
         check_folder(&folder, &plan)?;
         let shards = self.shards(&plan)?;
-        let task = self.task(&folder, has_programs)?;
+        let task = self.task(&folder)?;
         let job = self.job(&plan.name, &absolute(&folder)?, shards, &task);
         let program = self.to.program();
         if self.go && !is_on_path(program) {
@@ -81,7 +82,7 @@ impl Submit {
         say!("{job}");
         let (runs, each) = (plural(plan.runs.len(), "run"), plural(shards, "task"));
         if !self.go {
-            note!("note: {runs} in {each}; --go starts this, and so does a shell");
+            note!("note: {runs} in {each}; pass --go to start it, or run it in a shell");
             return Ok(());
         }
         note!("note: {runs} in {each}");
@@ -118,7 +119,7 @@ impl Submit {
     }
 
     /// The command that does one shard, all but the shard.
-    fn task(&self, folder: &Path, has_programs: bool) -> Result<String, CliError> {
+    fn task(&self, folder: &Path) -> Result<String, CliError> {
         let program = std::env::current_exe();
         let program = program.map_err(|source| unreadable(Path::new("driftless"), source))?;
         let mut words = vec![absolute(&program)?, "run".to_owned()];
@@ -131,8 +132,6 @@ impl Submit {
             let number = number.map(|number| number.to_string());
             words.extend(number.into_iter().flat_map(|number| [option.to_owned(), number]));
         }
-        // Tasks have nobody to ask.
-        words.extend(has_programs.then(|| "--trust".to_owned()));
         if matches!(self.to, Scheduler::Parallel) {
             check_braces(&words)?;
         }

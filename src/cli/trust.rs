@@ -1,5 +1,6 @@
 //! Programs that files of results name, which may come from anybody: those that the user lets start, and has let start before.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
@@ -11,34 +12,33 @@ use crate::output::folder_of;
 use crate::process::Command;
 
 /// Says which programs an experiment starts. Those that a file of results names are started only where the user says so, by
-/// `--trust`, now or once before. Whether there are any.
+/// `--trust`, now or once before.
 pub(super) fn tell_programs(
     experiment: &Experiment,
     file: Option<&Path>,
     is_trusted: bool,
-) -> Result<bool, CliError> {
-    let mut told = Vec::new();
-    let mut identity = String::new();
+) -> Result<(), CliError> {
     // A file need not say where it comes from.
     let mut is_from_results = file.map(folder_of).is_some_and(Folder::has_runs);
+    let (mut told, mut identities) = (BTreeSet::new(), BTreeSet::new());
     for (command, is_kept) in experiment.programs() {
         is_from_results |= is_kept;
-        let program = format!("`{command}` in {}", command.folder().display());
-        if !told.contains(&program) {
-            identity += &identity_of(command);
-            told.push(program);
-        }
+        let words = shell_words::join(command.words());
+        told.insert(format!("`{words}` in {}", command.folder().display()));
+        identities.insert(identity_of(command));
     }
     for program in &told {
         note!("note: this experiment starts {program}");
     }
-    let digest = sha256(identity.as_bytes());
+    let digest = sha256(identities.into_iter().collect::<String>().as_bytes());
     if told.is_empty() || !is_from_results || is_remembered(&digest) {
-        return Ok(!told.is_empty());
+        return Ok(());
     }
     if is_trusted || confirmed("Start what these results name? [y/N] ") {
-        remember(&digest);
-        return Ok(true);
+        if let Err(error) = remember(&digest) {
+            note!("warning: this cannot be remembered: {error}");
+        }
+        return Ok(());
     }
     Err(CliError::Usage {
         message: "these programs are named by a file of results, which may come from anybody"
@@ -47,12 +47,12 @@ pub(super) fn tell_programs(
     })
 }
 
-/// All that determines what a command starts.
+/// All that determines which program a command starts.
 fn identity_of(command: &Command) -> String {
     format!("{:?} {:?} {:?}\n", command.words(), command.folder(), command.files())
 }
 
-/// Where it stands what was trusted, in no folder that may come from others.
+/// The file of what was trusted, in no folder that may come from others.
 fn memory() -> Option<PathBuf> {
     let state = std::env::var_os("XDG_STATE_HOME").map(PathBuf::from).filter(|p| p.is_absolute());
     let home = || Some(std::env::home_dir()?.join(".local/state"));
@@ -64,12 +64,13 @@ fn is_remembered(digest: &str) -> bool {
     text.lines().any(|line| line == digest)
 }
 
-/// Remembers what was trusted; where that cannot be written, the user is asked again.
-fn remember(digest: &str) {
-    let Some(path) = memory() else { return };
-    let _ = fs::create_dir_all(folder_of(&path));
-    let file = fs::OpenOptions::new().append(true).create(true).open(path);
-    let _ = file.and_then(|mut file| writeln!(file, "{digest}"));
+/// Remembers what was trusted.
+fn remember(digest: &str) -> std::io::Result<()> {
+    let path = memory().ok_or_else(|| std::io::Error::other("found no home folder"))?;
+    fs::create_dir_all(folder_of(&path))?;
+    let mut file = fs::OpenOptions::new().append(true).create(true).open(path)?;
+    // In one piece, as others may do the same.
+    file.write_all(format!("{digest}\n").as_bytes())
 }
 
 /// Asks the user, where there is one.

@@ -9,6 +9,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
 use super::balance::{Sensible, sensible};
 use super::caught::caught;
+use super::external::ExternalProblem;
 use super::plan::Plan;
 use super::runner::RunError;
 use super::specs::RunSpec;
@@ -68,6 +69,11 @@ pub fn estimate(plan: &Plan, jobs: usize) -> Result<Estimate, RunError> {
 }
 
 impl Estimate {
+    /// Whether some runs start programs, and were not tried.
+    pub fn is_partial(&self) -> bool {
+        self.runs.iter().any(Option::is_none)
+    }
+
     /// Wall time of all runs that were tried on so many threads.
     pub fn time(&self, threads: usize) -> Duration {
         let tried = || self.runs.iter().flatten();
@@ -101,9 +107,12 @@ fn kind<'a>(plan: &'a Plan, run: &RunSpec) -> Alike<'a> {
 /// A few runs of every kind, with the first seed, spread evenly over the kind's instances.
 fn choose(plan: &Plan) -> Vec<&RunSpec> {
     let mut kinds: BTreeMap<Alike<'_>, Vec<&RunSpec>> = BTreeMap::new();
-    // Programs are started by runs alone.
-    let is_tried =
-        |run: &&RunSpec| run.seed == 1 && plan.optimisers[run.optimiser].program().is_none();
+    // Programs are started by runs alone, whether they search or are searched.
+    let is_tried = |run: &&RunSpec| {
+        run.seed == 1
+            && plan.optimisers[run.optimiser].program().is_none()
+            && ExternalProblem::of(&plan.instances[run.instance]).is_none()
+    };
     for run in plan.runs.iter().filter(is_tried) {
         kinds.entry(kind(plan, run)).or_default().push(run);
     }

@@ -22,5 +22,5 @@ mod solver;
 pub use client::Client;
 pub use command::{Command, CommandError, Patience};
 pub use problem::{Program, Told};
-pub use socket::Socket;
+pub use socket::{Socket, TOKEN};
 pub use solver::Solver;

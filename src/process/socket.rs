@@ -1,26 +1,32 @@
 //! A loopback socket, for programs that cannot be spoken with over their standard streams, such as MATLAB's.
 
-use std::io::{BufRead as _, BufReader, ErrorKind, Read as _, Write as _};
+use std::collections::VecDeque;
+use std::io::{Cursor, ErrorKind, Read as _, Write as _};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 
 use super::lines::{Ends, read_lines, thread, write_lines};
 use crate::search::Failure;
 
-/// Where a program finds the port, and the token that it has to show.
+/// The variable in which a program finds the port.
 const PORT: &str = "DRIFTLESS_PORT";
-const TOKEN: &str = "DRIFTLESS_TOKEN";
 
-/// How often somebody is looked for.
+/// The variable in which a program finds the token that it has to show.
+pub const TOKEN: &str = "DRIFTLESS_TOKEN";
+
+/// How often clients are looked for.
 const LOOK: Duration = Duration::from_millis(5);
 
 /// How long a token may take to arrive.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Longest first line \[byte\].
-const LONGEST: u64 = 4096;
+const LONGEST: usize = 4096;
+
+/// Clients that may take their time at once.
+const MOST_WAITING: usize = 64;
 
 /// A socket that one client may come to, if it knows the token: other users of the machine can reach it, too.
 #[derive(Debug)]
@@ -30,6 +36,14 @@ pub struct Socket {
     token: String,
 }
 
+fn new_token() -> Result<String, Failure> {
+    let mut bytes = [0; 16];
+    let filled = getrandom::fill(&mut bytes);
+    filled
+        .map_err(|error| Failure::new(format!("found no random numbers for a token: {error}")))?;
+    Ok(format!("{:032x}", u128::from_le_bytes(bytes)))
+}
+
 /// The first line of a client.
 #[derive(Deserialize)]
 struct Pass {
@@ -37,23 +51,14 @@ struct Pass {
 }
 
 impl Socket {
-    /// At a port that the system chooses, with a token nobody knows.
+    /// At a port that the system chooses, with a token that nobody knows.
     pub(super) fn open() -> Result<Self, Failure> {
-        let mut bytes = [0; 16];
-        getrandom::fill(&mut bytes).map_err(|error| {
-            Failure::new(format!("found no random numbers for a token: {error}"))
-        })?;
-        Self::at(0, format!("{:032x}", u128::from_le_bytes(bytes)))
+        Self::at(0, new_token()?)
     }
 
-    /// At a port of 127.0.0.1, 0 for one that the system chooses, with the token that the environment tells in
-    /// `DRIFTLESS_TOKEN` or, where it tells none, one nobody knows.
-    pub fn bind(port: u16) -> Result<Self, Failure> {
-        match std::env::var(TOKEN) {
-            Ok(token) if !token.is_empty() => Self::at(port, token),
-            _ if port == 0 => Self::open(),
-            _ => Self::at(port, Self::open()?.token),
-        }
+    /// At a port of 127.0.0.1, 0 for one that the system chooses, with this token or, without one, one that nobody knows.
+    pub fn bind(port: u16, token: Option<String>) -> Result<Self, Failure> {
+        Self::at(port, token.map_or_else(new_token, Ok)?)
     }
 
     fn at(port: u16, token: String) -> Result<Self, Failure> {
@@ -81,54 +86,93 @@ impl Socket {
 
     /// Waits for a client while it `is_wanted`, and speaks with it until nothing more is said.
     pub(super) fn serve(self, ends: Ends, is_wanted: &dyn Fn() -> bool) {
-        let Some(client) = self.client(is_wanted) else { return };
+        let Some(Admitted { mut stream, more }) = self.client(is_wanted) else { return };
         let Ends { incoming, outgoing, said } = ends;
-        let Ok(mut stream) = client.get_ref().try_clone() else { return };
-        if thread(move || read_lines(client, &incoming, &said)).is_ok() {
+        let Ok(own) = stream.try_clone() else { return };
+        let output = Cursor::new(more).chain(own);
+        if thread(move || read_lines(output, &incoming, &said)).is_ok() {
             write_lines(&mut stream, &outgoing);
             let _ = stream.shutdown(Shutdown::Write);
         }
     }
 
-    /// The first client that shows the token.
-    fn client(&self, is_wanted: &dyn Fn() -> bool) -> Option<BufReader<TcpStream>> {
+    /// The first client that shows the token. None has to wait for another that takes its time.
+    fn client(&self, is_wanted: &dyn Fn() -> bool) -> Option<Admitted> {
+        let mut waiting = VecDeque::new();
         loop {
-            // Who came before nobody was wanted any more is still let in.
+            // A client that came before nobody was wanted any more is still let in.
             let is_last = !is_wanted();
-            match self.listener.accept() {
-                Ok((stream, _)) => {
-                    if let Some(client) = self.admit(stream) {
-                        return Some(client);
-                    }
+            while let Ok((stream, _)) = self.listener.accept() {
+                if stream.set_nonblocking(true).is_ok() {
+                    waiting.push_back(Visitor::new(stream));
                 }
-                Err(error) if error.kind() == ErrorKind::WouldBlock && !is_last => {
-                    std::thread::sleep(LOOK);
+                if waiting.len() > MOST_WAITING {
+                    waiting.pop_front();
                 }
-                Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(_) if is_last => return None,
-                Err(_) => std::thread::sleep(LOOK),
             }
+            for mut visitor in std::mem::take(&mut waiting) {
+                match visitor.has_shown(&self.token) {
+                    Some(true) => return visitor.admitted(),
+                    Some(false) => visitor.refuse(),
+                    None => waiting.push_back(visitor),
+                }
+            }
+            if is_last {
+                return None;
+            }
+            std::thread::sleep(LOOK);
         }
     }
+}
 
-    /// A client, if its first line has the token.
-    fn admit(&self, stream: TcpStream) -> Option<BufReader<TcpStream>> {
-        stream.set_nonblocking(false).ok()?;
-        stream.set_nodelay(true).ok()?;
-        stream.set_read_timeout(Some(PATIENCE)).ok()?;
-        let mut client = BufReader::with_capacity(1 << 16, stream);
-        let mut line = Vec::new();
-        let read = (&mut client).take(LONGEST).read_until(b'\n', &mut line);
-        let pass = read.ok().and_then(|_| serde_json::from_slice::<Pass>(&line).ok());
-        if pass.is_none_or(|pass| pass.token != self.token) {
-            let refusal = serde_json::json!({
-                "stop": "failed",
-                "error": format!("expected a line {{\"token\": \"…\"}} with the token of {TOKEN}"),
-            });
-            let _ = writeln!(client.get_mut(), "{refusal}");
-            return None;
+/// A client that has shown the token, and what it said after it.
+struct Admitted {
+    stream: TcpStream,
+    more: Vec<u8>,
+}
+
+/// A client that has not shown a token yet.
+struct Visitor {
+    stream: TcpStream,
+    said: Vec<u8>,
+    deadline: Instant,
+}
+
+impl Visitor {
+    fn new(stream: TcpStream) -> Self {
+        Self { stream, said: Vec::new(), deadline: Instant::now() + PATIENCE }
+    }
+
+    /// Whether its first line has the token; none while the line is not complete.
+    fn has_shown(&mut self, token: &str) -> Option<bool> {
+        let mut bytes = [0; 4096];
+        let is_over = match self.stream.read(&mut bytes) {
+            Ok(count) => {
+                self.said.extend(&bytes[..count]);
+                count == 0
+            }
+            Err(error) => !matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted),
+        };
+        if let Some(end) = self.said.iter().position(|byte| *byte == b'\n') {
+            let pass = serde_json::from_slice::<Pass>(&self.said[..end]);
+            return Some(pass.is_ok_and(|pass| pass.token == token));
         }
-        client.get_ref().set_read_timeout(None).ok()?;
-        Some(client)
+        let is_late = Instant::now() >= self.deadline;
+        (is_over || is_late || self.said.len() > LONGEST).then_some(false)
+    }
+
+    fn admitted(mut self) -> Option<Admitted> {
+        let end = self.said.iter().position(|byte| *byte == b'\n')? + 1;
+        self.stream.set_nonblocking(false).ok()?;
+        self.stream.set_nodelay(true).ok()?;
+        Some(Admitted { more: self.said.split_off(end), stream: self.stream })
+    }
+
+    fn refuse(mut self) {
+        let refusal = serde_json::json!({
+            "stop": "failed",
+            "error": format!("expected a line {{\"token\": \"…\"}} with the token of {TOKEN}"),
+        });
+        let _ = writeln!(self.stream, "{refusal}");
     }
 }

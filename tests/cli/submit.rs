@@ -73,7 +73,7 @@ fn jobs_are_shown_and_nothing_is_written() {
     ] {
         let output = folder.run(&[&["submit", "small.toml", "--shards", "4"], args].concat());
         assert_eq!(job(&folder, &output), expected);
-        assert!(stderr(&output).contains(" runs in 4 tasks; --go starts this"));
+        assert!(stderr(&output).contains(" runs in 4 tasks; pass --go to start it"));
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
@@ -150,9 +150,11 @@ fn mistakes_are_told_before_anything_is_submitted() {
     }
     assert!(!folder.path().join("submitted").exists());
 
-    // Tasks have no terminal to be asked on.
+    // Tasks have no terminal to be asked on, and go by what is remembered.
     let trusted = ["submit", "other/programs.toml", "--to", "slurm", "--shards", "2", "--trust"];
-    assert!(job(&folder, &run(&folder, &trusted)).contains(" --trust --shard /2'"));
+    assert!(job(&folder, &run(&folder, &trusted)).contains(" --jobs 1 --shard /2'"));
+    let task = run(&folder, &["run", "other/programs.toml", "--shard", "0/2"]);
+    assert!(!stderr(&task).contains("--trust"), "{}", stderr(&task));
 }
 
 /// Without a number there are as many shards as make sense, which `check` tells as well.
