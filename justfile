@@ -50,6 +50,10 @@ figures:
 notebooks:
     notebooks/run.sh --check
 
+# the solvers of docs/solvers, with the packages and languages that they need; needs Python 3.11
+external:
+    tests/external/run.sh
+
 # jobs on HyperQueue, GNU parallel and Slurm, workers lost and added; a scheduler that is not installed is skipped
 cluster:
     tests/cluster/run.sh

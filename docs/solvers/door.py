@@ -1,7 +1,5 @@
 """The protocol for solvers in Python, without any package.
 
-    import door
-
     with door.Problem("my solver") as problem:
         cost, costs = problem(x), problem.batch(points)
         cost, slopes = problem.subgradient(x)
@@ -26,12 +24,12 @@ class Spent(BaseException):
 class Problem:
     """A box to search in (`lower`, `upper`, `dimension`), and the run's `seed`, `budget` and `settings`."""
 
-    def __init__(self, name, version="1"):
+    def __init__(self, name):
         opening = json.loads(sys.stdin.readline())
         box = opening["problem"]
         self.lower, self.upper, self.dimension, self.has = (box[k] for k in ("lower", "upper", "dimension", "has"))
         self.seed, self.budget, self.settings = opening["seed"], opening["budget"], opening["settings"]
-        self._say({"hello": {"name": name, "version": version}})
+        self._say({"hello": {"name": name}})
 
     def __call__(self, x):
         return self.batch([x])[0]

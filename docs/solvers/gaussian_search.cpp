@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 using Numbers = std::vector<double>;
-
 // The numbers behind a key: a list, or one alone. Costs that are not finite come as texts: "inf", "-inf" and "nan".
 Numbers numbers(const std::string& line, const std::string& key) {
     Numbers found;

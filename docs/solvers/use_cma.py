@@ -5,7 +5,7 @@ import numpy as np
 
 import door
 
-with door.Problem("pycma", cma.__version__.split()[0]) as problem:
+with door.Problem("pycma") as problem:
     lower, upper = np.array(problem.lower), np.array(problem.upper)
     rng = np.random.default_rng(problem.seed)
     size = 4 + int(3 * np.log(problem.dimension))

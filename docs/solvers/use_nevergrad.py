@@ -5,7 +5,7 @@ import numpy as np
 
 import door
 
-with door.Problem("nevergrad", ng.__version__) as problem:
+with door.Problem("nevergrad") as problem:
     lower, upper = np.array(problem.lower), np.array(problem.upper)
     # In the unit cube one step size serves all variables.
     space = ng.p.Array(shape=lower.shape, lower=0, upper=1)

@@ -1,12 +1,11 @@
 """A local method of SciPy, from one random start after another: settings = { method = "COBYQA" }, or "SLSQP", which is given slopes."""
 
 import numpy as np
-import scipy
 from scipy.optimize import Bounds, minimize
 
 import door
 
-with door.Problem("scipy", scipy.__version__) as problem:
+with door.Problem("SciPy") as problem:
     method = problem.settings["method"]
     lower, upper = np.array(problem.lower), np.array(problem.upper)
     rng = np.random.default_rng(problem.seed)

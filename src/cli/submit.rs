@@ -1,6 +1,5 @@
 //! `driftless submit`.
 
-use std::ffi::OsStr;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::process::Command;
@@ -13,6 +12,7 @@ use super::warnings::{warn_of_budgets, warn_of_subjects};
 use super::{CliError, start_worker_threads};
 use crate::exhibit::words::plural;
 use crate::experiment::{Folder, FolderError, Plan, estimate};
+use crate::process::is_on_path;
 use crate::registry::registry;
 
 /// Workers that are reckoned with where nobody says how many there are.
@@ -226,11 +226,4 @@ fn absolute(path: &Path) -> Result<String, CliError> {
 
 fn unreadable(path: &Path, source: std::io::Error) -> CliError {
     CliError::Unreadable { path: path.to_owned(), source }
-}
-
-/// Whether a shell finds the program.
-fn is_on_path(program: &str) -> bool {
-    let path = std::env::var_os("PATH");
-    let folders = path.as_deref().map(std::env::split_paths);
-    folders.into_iter().flatten().any(|folder| folder.join(OsStr::new(program)).is_file())
 }

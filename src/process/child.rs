@@ -23,7 +23,7 @@ pub(super) struct Child {
     process: std::process::Child,
     group: group::Group,
     lines: Lines,
-    /// Reads what it says to nobody.
+    /// Reads its standard error.
     errors: Option<JoinHandle<()>>,
     /// Whether it has closed its standard output, or was ended.
     is_silent: Arc<AtomicBool>,
@@ -104,11 +104,13 @@ impl Child {
         }
         self.stop();
         let status = self.process.wait().ok();
-        wait_for(self.errors.as_ref(), LAST_WORDS);
+        if let Some(errors) = &self.errors {
+            wait_for(errors, LAST_WORDS);
+        }
         status.filter(|_| by_itself)
     }
 
-    /// What it has said last to nobody, in one line; complete once it has ended.
+    /// The end of its log, in one line; complete once it has ended.
     pub(super) fn last_words(&self) -> String {
         self.lines.last_words()
     }

@@ -1,4 +1,4 @@
-//! An optimiser that is a client: it came by itself and is in charge.
+//! An optimiser that is a client: it connected by itself and is in charge.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -120,10 +120,8 @@ impl Command {
         if program.components().count() > 1 {
             return found_program(&self.folder.join(program));
         }
-        let path = std::env::var_os("PATH").unwrap_or_default();
-        let mut folders = std::env::split_paths(&path);
         // Elsewhere names have endings that the system adds.
-        if cfg!(not(unix)) || folders.any(|folder| found_program(&folder.join(program)).is_ok()) {
+        if cfg!(not(unix)) || is_on_path(&self.words[0]) {
             return Ok(());
         }
         Err(format!("found no program `{}` in the search path", self.words[0]).into())
@@ -166,6 +164,12 @@ impl fmt::Display for Command {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.words.join(" "))
     }
+}
+
+/// Whether the search path has such a program.
+pub(crate) fn is_on_path(program: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| found_program(&folder.join(program)).is_ok())
 }
 
 /// The SHA-256 of a file.

@@ -20,7 +20,7 @@ const LOOK: Duration = Duration::from_millis(50);
 enum Peer {
     /// A process of this program.
     Process(Child),
-    /// Somebody who came.
+    /// A client that connected.
     Guest(Guest),
 }
 

@@ -1,4 +1,4 @@
-//! Somebody who came by itself, on this program's standard streams or over a socket.
+//! A client that connected by itself, on this program's standard streams or over a socket.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,10 +52,10 @@ impl Guest {
     pub(super) fn end(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
         self.lines.close();
-        wait_for(Some(&self.writer), GRACE);
+        wait_for(&self.writer, GRACE);
     }
 
-    /// What it has said last that is no message, in one line.
+    /// The end of its log, in one line.
     pub(super) fn last_words(&self) -> String {
         self.lines.last_words()
     }

@@ -1,4 +1,4 @@
-//! Lines to somebody and from somebody, read and written by threads of their own.
+//! The lines of a conversation, read and written by threads of their own.
 
 use std::collections::VecDeque;
 use std::io::{BufRead as _, BufReader, Read, Write};
@@ -15,10 +15,10 @@ const LONGEST_LINE: u64 = 1 << 26;
 /// Lines that wait to be looked at; whoever says more has to wait.
 const WAITING_LINES: usize = 64;
 
-/// How much of what is said to nobody is kept \[byte\].
+/// How much of a log is kept \[byte\].
 const KEPT: usize = 2_000;
 
-/// What somebody said.
+/// What the other side said.
 #[derive(Debug)]
 pub(super) enum Line {
     /// A line that begins with `{`.
@@ -31,7 +31,7 @@ pub(super) enum Line {
     End,
 }
 
-/// The ends of a conversation on this side.
+/// This side of a conversation.
 #[derive(Debug)]
 pub(super) struct Lines {
     incoming: Receiver<Line>,
@@ -39,7 +39,7 @@ pub(super) struct Lines {
     said: Arc<Mutex<Tail>>,
 }
 
-/// The ends of a conversation on the other side, for threads that read and write.
+/// The other side, for threads that read and write.
 pub(super) struct Ends {
     pub(super) incoming: SyncSender<Line>,
     pub(super) outgoing: Receiver<String>,
@@ -47,7 +47,7 @@ pub(super) struct Ends {
 }
 
 impl Lines {
-    /// Both ends of a conversation that nobody takes part in yet.
+    /// Both sides of a conversation, before any reader or writer is attached.
     pub(super) fn new() -> (Self, Ends) {
         let (to_incoming, incoming) = sync_channel(WAITING_LINES);
         let (to_outgoing, outgoing) = channel();
@@ -77,7 +77,7 @@ impl Lines {
         self.outgoing = None;
     }
 
-    /// What was said last to nobody, in one line.
+    /// The end of the log, in one line.
     pub(super) fn last_words(&self) -> String {
         let said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
         let text = String::from_utf8_lossy(said.0.as_slices().0).into_owned()
@@ -92,15 +92,15 @@ pub(super) fn thread(work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<
     thread.map_err(|error| Failure::new(format!("cannot start a thread: {error}")))
 }
 
-/// Waits until a thread has ended, but not longer than told.
-pub(super) fn wait_for(thread: Option<&JoinHandle<()>>, patience: Duration) {
+/// Waits until a thread has ended, but not for ever.
+pub(super) fn wait_for(thread: &JoinHandle<()>, patience: Duration) {
     let deadline = Instant::now() + patience;
-    while thread.is_some_and(|thread| !thread.is_finished()) && Instant::now() < deadline {
+    while !thread.is_finished() && Instant::now() < deadline {
         std::thread::sleep(Duration::from_millis(1));
     }
 }
 
-/// The end of what was said.
+/// The end of a log.
 #[derive(Debug, Default)]
 pub(super) struct Tail(VecDeque<u8>);
 
@@ -137,7 +137,7 @@ pub(super) fn read_lines(output: impl Read, lines: &SyncSender<Line>, said: &Mut
     let _ = std::io::copy(&mut output, &mut std::io::sink());
 }
 
-/// Keeps the end of what is said.
+/// Keeps the end of a log.
 pub(super) fn read_log(mut log: impl Read, said: &Mutex<Tail>) {
     let mut bytes = [0; 4096];
     while let Ok(count @ 1..) = log.read(&mut bytes) {

@@ -20,6 +20,7 @@ mod socket;
 mod solver;
 
 pub use client::Client;
+pub(crate) use command::is_on_path;
 pub use command::{Command, CommandError, Patience};
 pub use problem::{Program, Told};
 pub use socket::{Socket, TOKEN};

@@ -32,7 +32,7 @@ pub(super) fn opening(oracle: &Oracle<'_>, rng: &Rng, settings: &Value) -> Strin
 
 /// A search, from `hello` to its end.
 pub(super) struct Session<'a> {
-    process: &'a mut Conversation,
+    peer: &'a mut Conversation,
     /// What the solver calls itself.
     pub(super) name: Option<String>,
     /// Points that were outside the box.
@@ -40,8 +40,8 @@ pub(super) struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    pub(super) fn new(process: &'a mut Conversation) -> Self {
-        Self { process, name: None, outside: 0 }
+    pub(super) fn new(peer: &'a mut Conversation) -> Self {
+        Self { peer, name: None, outside: 0 }
     }
 
     /// Answers until the search is over.
@@ -63,29 +63,29 @@ impl<'a> Session<'a> {
             Err(Stop::Interrupted) => "interrupted",
             Err(_) => "failed",
         };
-        self.process.say(answer::line(&serde_json::json!({ "stop": reason })));
+        self.peer.say(answer::line(&serde_json::json!({ "stop": reason })));
     }
 
     fn answer(&mut self, oracle: &mut Oracle<'_>) -> Result<(), Stop> {
-        let hello: Hello = self.process.greet(&|| oracle.is_interrupted())?;
+        let hello: Hello = self.peer.greet(&|| oracle.is_interrupted())?;
         self.name = hello.name;
         oracle.start_clock();
         loop {
-            let line = self.process.hear(1, &|| oracle.is_interrupted())?;
+            let line = self.peer.hear(1, &|| oracle.is_interrupted())?;
             let request = Request::read(&line);
-            match request.map_err(|failure| self.process.failure(failure.reason()))? {
+            match request.map_err(|failure| self.peer.failure(failure.reason()))? {
                 Request::Costs(id, x) => self.costs(oracle, id.as_ref(), &x)?,
                 Request::Slopes(id, x) => {
                     let x = self.point(oracle.bounds(), &x)?;
                     let found = oracle.subgradient(&x)?;
                     let answer = Answer::slopes(id.as_ref(), &found, oracle.remaining());
-                    self.process.say(answer::line(&answer));
+                    self.peer.say(answer::line(&answer));
                 }
                 Request::Terms(id, x) => {
                     let x = self.point(oracle.bounds(), &x)?;
                     let found = oracle.linearise(&x)?;
                     let answer = Answer::terms(id.as_ref(), &found, oracle.remaining());
-                    self.process.say(answer::line(&answer));
+                    self.peer.say(answer::line(&answer));
                 }
                 Request::Done => return Ok(()),
             }
@@ -100,15 +100,15 @@ impl<'a> Session<'a> {
         x: &Coordinates,
     ) -> Result<(), Stop> {
         if x.len() == 0 {
-            return Err(self.process.failure("asked for the costs of no points").into());
+            return Err(self.peer.failure("asked for the costs of no points").into());
         }
         let points = x.points(oracle.bounds().len());
-        let points = points.map_err(|failure| self.process.failure(failure.reason()))?;
+        let points = points.map_err(|failure| self.peer.failure(failure.reason()))?;
         let mut found = Vec::new();
         let outcome = self.evaluate(oracle, points, &mut found);
         if !found.is_empty() {
             let answer = Answer::costs(id, &found, x.is_single, oracle.remaining());
-            self.process.say(answer::line(&answer));
+            self.peer.say(answer::line(&answer));
         }
         outcome
     }
@@ -162,7 +162,7 @@ impl<'a> Session<'a> {
                 "asked for derivatives outside the box".to_owned()
             }
         };
-        Err(self.process.failure(&wrong).into())
+        Err(self.peer.failure(&wrong).into())
     }
 }
 

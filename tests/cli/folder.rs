@@ -32,6 +32,8 @@ impl Folder {
     pub(crate) fn command(&self, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_driftless"));
         command.args(args).current_dir(self.path());
+        // What is trusted is remembered there.
+        command.env("XDG_STATE_HOME", self.path().join("state"));
         command.env("LC_ALL", "C.UTF-8").env("NO_COLOR", "1").env_remove("RUST_BACKTRACE");
         for variable in [
             "HQ_TASK_ID",

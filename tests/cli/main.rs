@@ -18,7 +18,7 @@ mod reports;
 mod shards;
 #[cfg(feature = "harness")]
 mod splines;
-#[cfg(feature = "harness")]
+#[cfg(all(unix, feature = "harness"))]
 mod submit;
 #[cfg(feature = "harness")]
 mod survival;

@@ -91,7 +91,8 @@ fn go_starts_the_job() {
         (
             "parallel",
             "parallel",
-            "while [ \"$1\" != --quote ]; do shift; done; shift; exec \"$1\" \"$2\" \"$3\" \"$4\" \"$5\" --shard 1/4",
+            "while [ \"$1\" != --quote ]; do shift; done; shift; n=$#; \
+             for word; do set -- \"$@\" \"$(printf %s \"$word\" | sed 's/{}/1/')\"; done; shift \"$n\"; exec \"$@\"",
         ),
     ] {
         let folder = with_command(Folder::new().with(ODD, SMALL), command, script);

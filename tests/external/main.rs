@@ -440,6 +440,8 @@ fn solvers_to_start_from_work() {
     }
     if succeeds("octave-cli", &["--quiet", "--eval", "pkg load instrument-control"]) {
         commands.push("['octave-cli', '--quiet', 'gaussian_search_socket.m'], socket = true");
+    } else {
+        eprintln!("skipped: Octave, or its package instrument-control, is not installed");
     }
     let mut experiment = "name = 'solvers'\nseeds = 2\nbudget = { evaluations = 1000 }\n\
         [problem]\nexternal = { command = ['python3', 'problem.py'], settings = { dimension = 3 } }\n"

@@ -12,7 +12,7 @@ results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
 for shards in "${@:2}"; do
     "$program" submit "$here/$experiment" --to parallel --workers "$workers" --shards "$shards" --out "$results/$shards" --go \
-        > /dev/null 2>&1
+        > "$results/log" 2>&1 || { cat "$results/log" >&2; exit 1; }
     awk -F '\t' -v workers="$workers" -v shards="$shards" '
         NR > 1 {
             if (NR == 2 || $3 < first) first = $3
