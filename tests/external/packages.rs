@@ -47,7 +47,7 @@ fn scripts_of_other_packages_search() {
         match &**status {
             "budget-spent" => assert_eq!(evaluations, 1500),
             status => {
-                assert!(status == "finished" && evaluations < 1500, "{status}: {evaluations}")
+                assert!(status == "finished" && evaluations <= 1500, "{status}: {evaluations}")
             }
         }
     }
@@ -96,7 +96,8 @@ fn a_swarm_goes_through_both_doors() {
         kinds.dedup();
         for kind in kinds {
             let median = |swarm: &str| {
-                let own = |i: &usize| labels[*i] == swarm && instances[*i] == kind;
+                // On the task a label has the formulation behind it.
+                let own = |i: &usize| labels[*i].starts_with(swarm) && instances[*i] == kind;
                 let mut costs: Vec<f64> =
                     (0..labels.len()).filter(own).map(|i| costs.get(i).unwrap()).collect();
                 assert_eq!(costs.len(), 15);
