@@ -3,20 +3,12 @@
 #![no_main]
 
 use std::fs;
-use std::path::PathBuf;
-use std::sync::LazyLock;
 
 use driftless::experiment::{DataFormat, Experiment};
 use driftless::import::read;
 use driftless::input::Document;
 use driftless::registry;
 use libfuzzer_sys::fuzz_target;
-
-static FOLDER: LazyLock<(tempfile::TempDir, PathBuf)> = LazyLock::new(|| {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().to_owned();
-    (folder, path)
-});
 
 // The first byte is the format; what stands behind the first zero is the table that an index may name.
 fuzz_target!(|bytes: &[u8]| {
@@ -27,7 +19,8 @@ fuzz_target!(|bytes: &[u8]| {
         _ => (DataFormat::Csv, "runs.csv"),
     };
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
-    let folder = &FOLDER.1;
+    let held = tempfile::tempdir().expect("a folder");
+    let folder = held.path();
     fs::write(folder.join(index), &bytes[..end]).expect("an index");
     let table = bytes.get(end + 1..).unwrap_or_default();
     for name in ["a.dat", "a.tdat"] {

@@ -19,7 +19,7 @@ pub(super) struct Import {
     /// Format to read
     #[arg(long, value_enum)]
     format: Format,
-    /// Folder for the results, whose name they take; it may exist, but only empty
+    /// Folder for the results, new or empty; the experiment is named after it
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }

@@ -7,7 +7,7 @@ use super::entrant::Entrant;
 use super::plan::Plan;
 use super::same::places;
 use super::specs::RunSpec;
-use super::stored::origin;
+use super::stored::provenance;
 use super::subject::Instance;
 
 /// What tells an optimiser from those of other experiments: settings, formulation and what its runs may spend.
@@ -48,7 +48,7 @@ impl All {
         for ((name, plan), places) in plans.iter().zip(&places) {
             for (instance, place) in plan.instances.iter().zip(places) {
                 let known = first.entry(*place).or_insert((*name, instance));
-                if origin(known.1).is_some() && origin(instance).is_none() {
+                if provenance(known.1).is_some() && provenance(instance).is_none() {
                     *known = (*name, instance);
                 }
             }

@@ -3,7 +3,7 @@
 //! [`Foreign`] is what a reader of other tools' files hands over. A folder keeps it as every other experiment, with an
 //! `[imported]` table that says where it comes from and which runs there are.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write as _;
 use std::num::NonZeroU64;
 
@@ -14,8 +14,8 @@ use super::field::Entry;
 use super::file::Experiment;
 use super::identity::Identity;
 use super::import_table::{DataFormat, ImportTable, RunsTable};
-use super::origin::Origin;
 use super::plan::Plan;
+use super::provenance::Provenance;
 use super::specs::RunSpec;
 use super::stored::ProblemTable;
 use crate::digest::digest;
@@ -43,7 +43,7 @@ pub struct Foreign {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignProblem {
     /// What determines it.
-    pub origin: Origin,
+    pub provenance: Provenance,
     /// The least cost that there is, or that is known, if any is.
     pub optimum: Option<f64>,
 }
@@ -90,9 +90,9 @@ impl Foreign {
     pub fn experiment(&self, name: &str) -> Result<Experiment, InputError> {
         let mut experiment = Experiment::new(name)?;
         let document = experiment.document.clone();
-        let starts = self.starts();
-        for (problem, start) in self.problems.iter().zip(starts) {
-            experiment = experiment.with_instance(problem.table(start).instance(&document)?);
+        let starts = self.starts().into_iter().zip(self.labels());
+        for (problem, (start, label)) in self.problems.iter().zip(starts) {
+            experiment = experiment.with_instance(problem.table(label, start).instance(&document)?);
         }
         let kept: Vec<(String, Identity)> = self.entrants();
         for (optimiser, (label, settings)) in self.optimisers.iter().zip(kept) {
@@ -108,13 +108,34 @@ impl Foreign {
         Ok(experiment)
     }
 
-    /// The runs in the order of a plan of theirs.
-    pub(super) fn in_order_of<'a>(&'a self, plan: &Plan) -> Vec<&'a ForeignRun> {
+    /// The runs of a plan of theirs, each with what was read of it; where nothing was, the run is the error.
+    pub(super) fn paired<'a>(
+        &'a self,
+        plan: &'a Plan,
+    ) -> Result<Vec<(&'a RunSpec, &'a ForeignRun)>, &'a RunSpec> {
         let place = |run: &ForeignRun| (run.problem, run.optimiser, run.seed);
         let by_place: BTreeMap<_, _> = self.runs.iter().map(|run| (place(run), run)).collect();
-        let of =
-            |spec: &RunSpec| by_place.get(&(spec.instance, spec.optimiser, spec.seed)).copied();
-        plan.runs.iter().filter_map(of).collect()
+        let pair = |spec: &'a RunSpec| {
+            let found = by_place.get(&(spec.instance, spec.optimiser, spec.seed));
+            found.map(|run| (spec, *run)).ok_or(spec)
+        };
+        plan.runs.iter().map(pair).collect()
+    }
+
+    /// Labels that tell the instances apart: exports of several experiments may use one number for several.
+    fn labels(&self) -> Vec<String> {
+        let labels: Vec<String> =
+            self.problems.iter().map(|problem| problem.provenance.label()).collect();
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        for label in &labels {
+            *counts.entry(label).or_default() += 1;
+        }
+        let label = |(problem, label): (&ForeignProblem, &String)| match &problem.provenance.digest
+        {
+            Some(digest) if counts[label.as_str()] > 1 => format!("{label} ({digest})"),
+            _ => label.clone(),
+        };
+        self.problems.iter().zip(&labels).map(label).collect()
     }
 
     /// Labels that tell the optimisers apart, and all that tells each from those of other data: also the data themselves, since a
@@ -122,26 +143,27 @@ impl Foreign {
     fn entrants(&self) -> Vec<(String, Identity)> {
         let mut data = vec![BTreeMap::new(); self.optimisers.len()];
         for run in &self.runs {
-            let origin = &self.problems[run.problem].origin;
-            data[run.optimiser].insert((origin, run.seed), digest(&written(run)));
+            let provenance = &self.problems[run.problem].provenance;
+            data[run.optimiser].insert((provenance, run.seed), digest(&written(run)));
         }
         let mut taken = HashSet::new();
-        let entrant = |(optimiser, runs): (&ForeignOptimiser, BTreeMap<(&Origin, u64), String>)| {
-            let runs = serde_json::to_string(&runs.into_iter().collect::<Vec<_>>());
-            let settings = serde_json::json!({
-                "imported": self.format.name(),
-                "info": optimiser.info,
-                "data": digest(&runs.unwrap_or_default()),
-            });
-            let mut label = optimiser.name.clone();
-            for n in 2.. {
-                if taken.insert(label.clone()) {
-                    break;
+        let entrant =
+            |(optimiser, runs): (&ForeignOptimiser, BTreeMap<(&Provenance, u64), String>)| {
+                let runs = serde_json::to_string(&runs.into_iter().collect::<Vec<_>>());
+                let settings = serde_json::json!({
+                    "imported": self.format.name(),
+                    "info": optimiser.info,
+                    "data": digest(&runs.unwrap_or_default()),
+                });
+                let mut label = optimiser.name.clone();
+                for n in 2.. {
+                    if taken.insert(label.clone()) {
+                        break;
+                    }
+                    label = format!("{} {n}", optimiser.name);
                 }
-                label = format!("{} {n}", optimiser.name);
-            }
-            (label, Identity::of(settings))
-        };
+                (label, Identity::of(settings))
+            };
         self.optimisers.iter().zip(data).map(entrant).collect()
     }
 
@@ -188,11 +210,12 @@ impl Foreign {
 }
 
 impl ForeignProblem {
-    fn table(&self, start_cost: f64) -> ProblemTable {
+    fn table(&self, label: String, start_cost: f64) -> ProblemTable {
         let optimum = self.optimum.filter(|optimum| optimum.is_finite());
         let targets = optimum.map(|optimum| TARGETS.map(|target| optimum + target));
         ProblemTable::imported(
-            &self.origin,
+            &self.provenance,
+            label,
             optimum,
             start_cost,
             targets.as_ref().map_or(&[], |t| t),
@@ -208,4 +231,40 @@ fn written(run: &ForeignRun) -> String {
         let _ = write!(text, " {} {:x} {seconds:x}", step.evaluation, step.cost.to_bits());
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn foreign() -> Foreign {
+        let provenance = Provenance { name: "p".to_owned(), ..Provenance::default() };
+        let run = |seed| ForeignRun {
+            problem: 0,
+            optimiser: 0,
+            seed,
+            budget: NonZeroU64::MIN,
+            evaluations: 1,
+            trace: vec![ForeignStep { evaluation: 1, cost: seed as f64, seconds: None }],
+        };
+        Foreign {
+            format: DataFormat::Csv,
+            from: String::new(),
+            problems: vec![ForeignProblem { provenance, optimum: None }],
+            optimisers: vec![ForeignOptimiser { name: "o".to_owned(), info: String::new() }],
+            runs: [3, 1, 2].map(run).into(),
+        }
+    }
+
+    /// A run that was not read is named, and takes no other's trace.
+    #[test]
+    fn runs_and_traces_are_paired_by_what_they_are_of() {
+        let mut foreign = foreign();
+        let plan = foreign.experiment("e").unwrap().plan().unwrap();
+        let pairs = foreign.paired(&plan).unwrap();
+        assert_eq!(pairs.len(), 3);
+        assert!(pairs.iter().all(|(spec, run)| spec.seed == run.seed));
+        foreign.runs.retain(|run| run.seed != 2);
+        assert_eq!(foreign.paired(&plan).unwrap_err().seed, 2);
+    }
 }

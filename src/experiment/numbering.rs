@@ -3,8 +3,9 @@
 use std::collections::{HashMap, HashSet};
 
 use super::identity::Identity;
-use super::origin::{IMPORTED, WORKED_OUT};
 use super::plan::Plan;
+use super::provenance::{IMPORTED_KIND, WORKED_OUT};
+use super::same::instance_digest;
 use super::subject::{Instance, Number, Numbers};
 use crate::digest::digest;
 
@@ -31,6 +32,8 @@ pub struct Numbered {
     pub dimension: u16,
     /// The instance's number.
     pub instance: u32,
+    /// What tells the instance from all others, in every experiment: 16 hexadecimal digits.
+    pub digest: String,
 }
 
 /// An experiment that exports have too few numbers for.
@@ -68,7 +71,9 @@ impl Plan {
             numbering.renumbered += usize::from(number != own_number(&own));
             taken.insert((function, dimension, number));
             let name = named.1.clone();
-            numbering.instances.push(Numbered { function, name, dimension, instance: number });
+            let digest = instance_digest(instance);
+            let numbered = Numbered { function, name, dimension, instance: number, digest };
+            numbering.instances.push(numbered);
         }
         Ok(numbering)
     }
@@ -115,7 +120,7 @@ fn function_name(instance: &Instance, by: &Number) -> String {
     let (subject, group) = (&instance.subject, &instance.group);
     let problem = subject.name();
     let name = match by {
-        Number::Of(_) if subject.kind() == IMPORTED => problem.to_owned(),
+        Number::Of(_) if subject.kind() == IMPORTED_KIND => problem.to_owned(),
         Number::Known(_) | Number::Exported(..) => problem.to_owned(),
         Number::Of(_) if group.starts_with(problem) => group.clone(),
         Number::Of(_) => format!("{problem} {group}"),

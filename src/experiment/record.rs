@@ -14,7 +14,7 @@ use super::value::{Judgement, Quantity, Value, ValueKind};
 use crate::search::{Oracle, Stop, TracePoint};
 
 /// The word for imported runs in the `status` column.
-pub(super) const IMPORTED: &str = "imported";
+pub(super) const IMPORTED_STATUS: &str = "imported";
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,7 +54,7 @@ impl Status {
             Self::NoDerivatives => "no-derivatives",
             Self::Failed(_) => "failed",
             Self::Panicked(_) => "panicked",
-            Self::Imported => IMPORTED,
+            Self::Imported => IMPORTED_STATUS,
         }
     }
 
@@ -107,8 +107,8 @@ pub(super) struct Ended<'a> {
 
 impl Record {
     pub(super) fn new(plan: &Plan, run: &RunSpec, ended: Ended<'_>) -> PolarsResult<Self> {
-        let told = ended.told();
-        let (row, cost, message) = (row(plan, run, &told)?, told.certified, told.message);
+        let outcome = ended.outcome();
+        let (row, cost, message) = (row(plan, run, &outcome)?, outcome.certified, outcome.message);
         let threads = Some(ended.threads as u64);
         let steps: Vec<Step> = ended.oracle.into_trace().iter().map(Step::of).collect();
         Ok(Self {
@@ -126,13 +126,13 @@ impl Record {
     pub(super) fn imported(plan: &Plan, run: &RunSpec, found: &ForeignRun) -> PolarsResult<Self> {
         let last = found.trace.last();
         let cost = last.map(|step| step.cost);
-        let told = Told {
+        let outcome = Outcome {
             cost,
             certified: cost,
             evaluations: found.evaluations,
             seconds: last.and_then(|step| step.seconds),
-            status: IMPORTED,
-            ..Told::default()
+            status: IMPORTED_STATUS,
+            ..Outcome::default()
         };
         let steps: Vec<Step> = found.trace.iter().map(Step::imported).collect();
         Ok(Self {
@@ -140,16 +140,16 @@ impl Record {
             cost: cost.unwrap_or(f64::NAN),
             message: String::new(),
             status: Status::Imported,
-            row: row(plan, run, &told)?,
+            row: row(plan, run, &outcome)?,
             clock: clock_table(&run.key, &steps, None)?,
             trace: trace_table(&run.key, &steps)?,
         })
     }
 }
 
-/// What is told of a run; what is not known is none.
+/// What came of a run; what is not known is none.
 #[derive(Debug, Default)]
-struct Told {
+struct Outcome {
     /// Best cost, as the search evaluated it.
     cost: Option<f64>,
     violation: Option<f64>,
@@ -212,10 +212,10 @@ impl Ended<'_> {
             .or_else(|| self.oracle.best().filter(|_| !self.is_unjudged).map(|b| b.evaluation.cost))
     }
 
-    fn told(&self) -> Told {
+    fn outcome(&self) -> Outcome {
         let Self { status, judgement, seconds, oracle, .. } = self;
         let best = oracle.best();
-        Told {
+        Outcome {
             cost: best.map(|best| best.evaluation.cost),
             violation: best.map(|best| best.evaluation.violation),
             point: best.map(|best| best.x.clone()),
@@ -241,12 +241,12 @@ impl Ended<'_> {
 
 /// What is to be said of a run beyond its status.
 fn message(status: &Status, oracle: &Oracle<'_>) -> String {
-    let told = [status.message()].into_iter().chain(oracle.remarks().iter().cloned());
-    told.filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
+    let parts = [status.message()].into_iter().chain(oracle.remarks().iter().cloned());
+    parts.filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
 /// The `runs` table.
-fn row(plan: &Plan, run: &RunSpec, told: &Told) -> PolarsResult<DataFrame> {
+fn row(plan: &Plan, run: &RunSpec, outcome: &Outcome) -> PolarsResult<DataFrame> {
     let entrant = &plan.optimisers[run.optimiser];
     let instance = &plan.instances[run.instance];
     let space = entrant.space(instance);
@@ -267,29 +267,29 @@ fn row(plan: &Plan, run: &RunSpec, told: &Told) -> PolarsResult<DataFrame> {
         runs::TARGETS => list(Some(&instance.targets)),
         runs::SEED => [run.seed],
         runs::BUDGET => [run.budget],
-        runs::COST => [told.cost],
-        runs::VIOLATION => [told.violation],
-        runs::POINT => list(told.point.as_ref()),
-        runs::CERTIFIED_COST => [told.certified],
+        runs::COST => [outcome.cost],
+        runs::VIOLATION => [outcome.violation],
+        runs::POINT => list(outcome.point.as_ref()),
+        runs::CERTIFIED_COST => [outcome.certified],
     )?;
-    let values = told.measures.iter().cloned();
+    let values = outcome.measures.iter().cloned();
     let own: Vec<_> = instance.subject.measures().into_iter().zip(values).collect();
     let measures = cells(plan.measures(), &own);
     let tail = df!(
-        runs::EVALUATIONS => [told.evaluations],
-        runs::FIRST_FEASIBLE => [told.first_feasible],
-        runs::LINEARISATIONS => [told.counts.map(|counts| counts.linearisations)],
-        runs::CURVATURES => [told.counts.map(|counts| counts.curvatures)],
-        runs::CONIC_SOLVES => [told.counts.map(|counts| counts.conic_solves)],
-        runs::CONIC_FAILURES => [told.counts.map(|counts| counts.conic_failures)],
-        runs::SECONDS => [told.seconds],
-        runs::SECONDS_IN_PROBLEM => [told.seconds_in_problem],
-        runs::STATUS => [told.status],
-        runs::MESSAGE => [told.message.as_str()],
+        runs::EVALUATIONS => [outcome.evaluations],
+        runs::FIRST_FEASIBLE => [outcome.first_feasible],
+        runs::LINEARISATIONS => [outcome.counts.map(|counts| counts.linearisations)],
+        runs::CURVATURES => [outcome.counts.map(|counts| counts.curvatures)],
+        runs::CONIC_SOLVES => [outcome.counts.map(|counts| counts.conic_solves)],
+        runs::CONIC_FAILURES => [outcome.counts.map(|counts| counts.conic_failures)],
+        runs::SECONDS => [outcome.seconds],
+        runs::SECONDS_IN_PROBLEM => [outcome.seconds_in_problem],
+        runs::STATUS => [outcome.status],
+        runs::MESSAGE => [outcome.message.as_str()],
         runs::VERSION => [env!("CARGO_PKG_VERSION")],
         runs::COMMIT => [git_version::git_version!(args = ["--always", "--dirty"], fallback = "unknown")],
-        runs::CPU => [told.cpu],
-        runs::DATE => [told.date.as_deref()],
+        runs::CPU => [outcome.cpu],
+        runs::DATE => [outcome.date.as_deref()],
     )?;
     head.hstack(&facts)?.hstack(found.columns())?.hstack(&measures)?.hstack(tail.columns())
 }

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::budget::BudgetTable;
 use super::identity::Identity;
-use super::origin::{IMPORTED, Origin};
 use super::plain::PLAIN;
+use super::provenance::{IMPORTED_KIND, Provenance};
 use super::subject::{Coordinate, Instance, Number, Numbers, Results, Subject};
 use super::value::{Quantity, Value};
 use crate::exhibit::{Exhibits, Finding};
@@ -97,24 +97,26 @@ impl ProblemTable {
         }
     }
 
-    /// Of an imported instance: what determines it, its least known cost, the cost that searches begin with, and targets.
+    /// Of an imported instance: what determines it, its label, its least known cost, the cost that searches begin with, and
+    /// targets.
     pub(super) fn imported(
-        origin: &Origin,
+        provenance: &Provenance,
+        label: String,
         optimum: Option<f64>,
         start_cost: f64,
         targets: &[f64],
     ) -> Self {
-        let [label, group] = origin.labels();
+        let group = provenance.group();
         let known_cost = optimum.filter(|cost| cost.is_finite()).map(Finite);
         Self {
-            kind: IMPORTED.to_owned(),
-            series: Some(origin.subject()),
-            name: origin.subject(),
+            kind: IMPORTED_KIND.to_owned(),
+            series: Some(provenance.subject()),
+            name: provenance.subject(),
             title: None,
             group: (group != label).then_some(group),
             label,
-            dimension: origin.dimension.and_then(|n| usize::try_from(n).ok()).unwrap_or(1),
-            least_cost: known_cost.filter(|_| origin.has_least_cost()),
+            dimension: provenance.dimension.and_then(|n| usize::try_from(n).ok()).unwrap_or(1),
+            least_cost: known_cost.filter(|_| provenance.has_least_cost()),
             known_cost,
             start_cost,
             symbol: letter(),
@@ -122,7 +124,7 @@ impl ProblemTable {
             targets: targets.iter().copied().map(Finite).collect(),
             budget: None,
             coordinates: Vec::new(),
-            identity: toml::Spanned::new(0..0, origin.identity().to_string()),
+            identity: toml::Spanned::new(0..0, provenance.identity().to_string()),
             facts: Vec::new(),
             measures: Vec::new(),
         }
@@ -134,8 +136,8 @@ impl ProblemTable {
             let message = format!("found no JSON, expected the problem's identity: {error}");
             document.error_at(self.identity.span(), message, None)
         })?;
-        let is_imported = self.kind == IMPORTED;
-        let origin = is_imported.then(|| identity.parse()).transpose().map_err(|error| {
+        let is_imported = self.kind == IMPORTED_KIND;
+        let provenance = is_imported.then(|| identity.parse()).transpose().map_err(|error| {
             let message = format!("found no origin of an imported problem: {error}");
             document.error_at(self.identity.span(), message, None)
         })?;
@@ -143,7 +145,7 @@ impl ProblemTable {
         let title = self.title.clone().unwrap_or_else(|| group.clone());
         let series = self.series.clone().unwrap_or_else(|| self.label.clone());
         let targets: Vec<f64> = self.targets.iter().map(|target| target.0).collect();
-        let subject = Arc::new(Stored { identity, origin, table: self.clone() });
+        let subject = Arc::new(Stored { identity, provenance, table: self.clone() });
         Ok(Instance {
             group,
             title,
@@ -162,12 +164,12 @@ struct Stored {
     table: ProblemTable,
     identity: Identity,
     /// Of an imported one: where it comes from.
-    origin: Option<Origin>,
+    provenance: Option<Provenance>,
 }
 
 /// What determines an imported instance; none for others.
-pub(super) fn origin(instance: &Instance) -> Option<&Origin> {
-    instance.subject.as_any()?.downcast_ref::<Stored>()?.origin.as_ref()
+pub(super) fn provenance(instance: &Instance) -> Option<&Provenance> {
+    instance.subject.as_any()?.downcast_ref::<Stored>()?.provenance.as_ref()
 }
 
 impl Subject for Stored {
@@ -234,11 +236,11 @@ impl Subject for Stored {
     /// An imported function keeps the number that an export of this program gave it; others have one that follows from all that
     /// determines them, since their own stand for other functions here.
     fn numbers(&self) -> Option<Numbers> {
-        let origin = self.origin.as_ref()?;
-        let function = origin.function_identity();
+        let provenance = self.provenance.as_ref()?;
+        let function = provenance.function_identity();
         let by_identity = || Number::Of(self.identity());
-        Some(match (origin.function, origin.instance) {
-            (Some(number), Some(instance)) if origin.is_exported() => Numbers {
+        Some(match (provenance.function, provenance.instance) {
+            (Some(number), Some(instance)) if provenance.is_exported() => Numbers {
                 function: Number::Exported(number, function),
                 instance: Number::Exported(instance, self.identity()),
             },
@@ -250,9 +252,9 @@ impl Subject for Stored {
     }
 
     fn dependence(&self, instances: &[&Instance]) -> Option<&'static str> {
-        let functions = instances.iter().filter_map(|instance| origin(instance));
+        let functions = instances.iter().filter_map(|instance| provenance(instance));
         let mut seen = HashSet::new();
-        let mut names = functions.map(|origin| origin.function_identity().to_string());
+        let mut names = functions.map(|provenance| provenance.function_identity().to_string());
         names.any(|name| !seen.insert(name)).then_some(
             "Instances and dimensions of one imported function are not independent functions, so p-values are smaller than \
              they should be.",
@@ -260,7 +262,7 @@ impl Subject for Stored {
     }
 
     fn exhibits(&self, _: &Results<'_>) -> Exhibits {
-        if [PLAIN, IMPORTED].contains(&self.table.kind.as_str()) {
+        if [PLAIN, IMPORTED_KIND].contains(&self.table.kind.as_str()) {
             return Exhibits::default();
         }
         let left_out = format!(

@@ -47,7 +47,15 @@ pub(super) fn write(suite: &Suite, folder: &Path) -> Result<(), SuiteError> {
                 trials.iter().map(|trial| suite.objective(trial).group.as_str()).collect();
             let groups: Vec<&str> = groups.into_iter().collect();
             let budget = trials.iter().map(|trial| trial.budget).max().unwrap_or(1);
-            head(&mut index, algorithm, function, (id, dimension), (&groups.join("; "), budget));
+            let digests: BTreeSet<(u32, &str)> = trials
+                .iter()
+                .map(|trial| suite.objective(trial))
+                .map(|instance| (instance.number, instance.digest.as_str()))
+                .collect();
+            let digests: Vec<String> =
+                digests.iter().map(|(number, digest)| format!("{number} {digest}")).collect();
+            let entry = [&groups.join("; "), &digests.join(", "), &budget.to_string()];
+            head(&mut index, algorithm, function, (id, dimension), entry.map(String::as_str));
             index.push_str(&path);
             let (mut by_target, mut by_evaluation) = (String::new(), String::new());
             for trial in trials {
@@ -74,7 +82,7 @@ fn head(
     algorithm: &Algorithm,
     function: &Function,
     (id, dimension): (u32, u16),
-    (group, budget): (&str, u64),
+    [group, digests, budget]: [&str; 3],
 ) {
     let known = function.instances.iter().all(|instance| instance.is_known);
     let optimum = if known { "known beforehand" } else { "least cost found by any of these runs" };
@@ -84,7 +92,7 @@ fn head(
          algId = '{}', coco_version = '2.8.2', logger = 'bbob', data_format = 'bbob-new2', \
          settings = ''\n\
          % {}: {} {}; group {group}; Fopt: {optimum}; instance i with seed s is trial {SEEDS} i + s; \
-         budget {budget}",
+         digests of instances {digests}; budget {budget}",
         algorithm.name.replace('\'', "\""),
         function.name,
         algorithm.name,

@@ -3,7 +3,7 @@
 //! The layout is that of the logger `ioh` 0.3.22 (doi `10.1162/evco_a_00342`), as `iohinspector` 0.0.8
 //! reads it. Both split a table into runs where `evaluations` is 1. Attributes of an experiment are
 //! evaluated as Python when read, so they are literals here; those of a run are not surfaced, so the
-//! seed is also a column.
+//! seed is also a column. `digest` tells a run's instance from all others, which may share its number.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -44,7 +44,7 @@ pub(super) fn write(suite: &Suite, folder: &Path) -> Result<(), SuiteError> {
             "maximization": false,
             "algorithm": { "name": algorithm.name, "info": algorithm.settings },
             "experiment_attributes": experiment_attributes(suite, function),
-            "run_attributes": ["seed", "optimum", "budget"],
+            "run_attributes": ["seed", "optimum", "budget", "digest"],
             "attributes": COLUMNS,
             "scenarios": scenarios,
         });
@@ -79,6 +79,7 @@ fn run(suite: &Suite, trial: &ExportedRun) -> Value {
         "seed": trial.seed,
         "optimum": suite.objective(trial).optimum,
         "budget": trial.budget,
+        "digest": suite.objective(trial).digest,
     })
 }
 

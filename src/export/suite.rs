@@ -62,6 +62,8 @@ pub struct Function {
 pub struct Objective {
     /// Its number in the files, the same in every experiment.
     pub number: u32,
+    /// What tells it from all others, in every experiment: 16 hexadecimal digits.
+    pub digest: String,
     /// Its group.
     pub group: String,
     /// The number of variables, whatever the formulation.
@@ -208,6 +210,7 @@ fn functions(plan: &Plan, numbering: &Numbering, least: &[f64]) -> (Vec<Function
         places.push((place, of_function.instances.len()));
         of_function.instances.push(Objective {
             number: numbered.instance,
+            digest: numbered.digest.clone(),
             group: instance.group.clone(),
             dimension: numbered.dimension,
             optimum: optimum.unwrap_or(*least),

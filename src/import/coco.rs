@@ -4,6 +4,7 @@
 //! The layout is that of the logger `bbob`, formats `bbob-old` (2009) to `bbob-new2`, as `cocopp` 2.9.1 reads it
 //! (doi 10.1080/10556788.2020.1808977). Both tables of an entry are rows of the same runs, so a trace has what either tells.
 
+use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,7 @@ use super::error::ImportError;
 use super::files::{beside, files};
 use super::lines::Lines;
 use super::{Import, bbob};
-use crate::experiment::{DataFormat, EXPORTED_SUITE, ForeignOptimiser, Origin};
+use crate::experiment::{DataFormat, EXPORTED_SUITE, ForeignOptimiser, Provenance};
 
 /// Trial numbers of each instance in an export of this program: instance i with seed s is trial 2,000,000 i + s.
 const SEEDS: u64 = 2_000_000;
@@ -135,6 +136,7 @@ impl Entry {
 
     /// Adds the runs.
     fn read(&self, index: &Path, collected: &mut Collected) -> Result<(), ImportError> {
+        let digests = self.digests();
         for table in &self.tables {
             let (by_target, by_evaluation) =
                 (table.path.with_extension("dat"), table.path.with_extension("tdat"));
@@ -173,12 +175,13 @@ impl Entry {
                 }
                 let (instance, seed) = self.trial(*number, index)?;
                 let run = ReadRun {
-                    origin: Origin {
+                    provenance: Provenance {
                         suite: self.suite.clone(),
                         function: self.function,
                         name: self.function_name(),
                         dimension: self.dimension,
                         instance: Some(instance),
+                        digest: digests.get(&instance).cloned(),
                     },
                     optimiser: ForeignOptimiser {
                         name: self.algorithm.clone(),
@@ -237,6 +240,19 @@ impl Entry {
     fn budget(&self) -> Option<NonZeroU64> {
         let (_, budget) = self.comment.rsplit_once("; budget ")?;
         budget.trim().parse().ok().filter(|_| self.is_exported())
+    }
+
+    /// What tells instances from all others, by their numbers, which an export of this program says in the comment, before the
+    /// budget.
+    fn digests(&self) -> HashMap<u32, String> {
+        let behind = self.comment.rsplit_once("; digests of instances ").map(|(_, behind)| behind);
+        let digests = behind.and_then(|behind| behind.split_once(';')).map(|(digests, _)| digests);
+        let digest = |part: &str| {
+            let (number, digest) = part.trim().split_once(' ')?;
+            Some((number.parse().ok()?, digest.to_owned()))
+        };
+        let parts = digests.filter(|_| self.is_exported()).unwrap_or_default().split(',');
+        parts.filter_map(digest).collect()
     }
 
     /// Whether an export of this program says in the comment that optima are known beforehand.
@@ -300,7 +316,7 @@ impl<'a> Sections<'a> {
                 continue;
             }
             if line.starts_with('%') {
-                let optimum = told_optimum(&line);
+                let optimum = stated_optimum(&line);
                 if section.is_some() {
                     self.optimum = optimum;
                     break;
@@ -354,8 +370,8 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// The optimum that a comment tells, as in `best noise-free fitness - Fopt (7.948000000000e+01)`.
-fn told_optimum(comment: &str) -> Option<f64> {
+/// The optimum that a comment states, as in `best noise-free fitness - Fopt (7.948000000000e+01)`.
+fn stated_optimum(comment: &str) -> Option<f64> {
     let (_, behind) = comment.split_once("Fopt (")?;
     let (number, _) = behind.split_once(')')?;
     number.trim().parse().ok().filter(|optimum: &f64| optimum.is_finite())

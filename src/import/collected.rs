@@ -8,7 +8,7 @@ use super::Import;
 use super::error::ImportError;
 use super::files::name_of;
 use crate::experiment::{
-    DataFormat, Foreign, ForeignOptimiser, ForeignProblem, ForeignRun, ForeignStep, Origin,
+    DataFormat, Foreign, ForeignOptimiser, ForeignProblem, ForeignRun, ForeignStep, Provenance,
 };
 
 /// Most runs, as of any experiment.
@@ -85,7 +85,7 @@ impl Trace {
 /// One run as its files have it.
 #[derive(Debug)]
 pub(super) struct ReadRun {
-    pub(super) origin: Origin,
+    pub(super) provenance: Provenance,
     pub(super) optimiser: ForeignOptimiser,
     /// None where the data do not tell it.
     pub(super) seed: Option<u64>,
@@ -96,27 +96,47 @@ pub(super) struct ReadRun {
     pub(super) trace: Trace,
 }
 
+/// The runs of an optimiser on an instance that have been read so far.
+#[derive(Debug)]
+struct Cell {
+    seeds: HashSet<u64>,
+    /// Whether the data do not tell the seeds, so that runs are numbered.
+    are_numbered: bool,
+    /// That of the first index that has some.
+    folder: PathBuf,
+}
+
 /// The runs that have been read so far.
 #[derive(Debug, Default)]
 pub(super) struct Collected {
-    problems: BTreeMap<Origin, Option<f64>>,
+    problems: BTreeMap<Provenance, Option<f64>>,
     optimisers: BTreeSet<ForeignOptimiser>,
     runs: Vec<ReadRun>,
-    /// By instance and optimiser: the seeds, and the folder of the index that has them.
-    cells: HashMap<(Origin, ForeignOptimiser), (HashSet<u64>, PathBuf)>,
+    /// The first with each digest: whatever it is called, it is the same instance.
+    exported: HashMap<String, Provenance>,
+    cells: HashMap<(Provenance, ForeignOptimiser), Cell>,
     rows: usize,
     are_seeds_counted: bool,
 }
 
 impl Collected {
     /// Adds a run that a file has, or an index.
-    pub(super) fn add(&mut self, run: ReadRun, file: &Path) -> Result<(), ImportError> {
+    pub(super) fn add(&mut self, mut run: ReadRun, file: &Path) -> Result<(), ImportError> {
+        if let Some(digest) = &run.provenance.digest {
+            let first = self.exported.entry(digest.clone());
+            run.provenance = first.or_insert_with(|| run.provenance.clone()).clone();
+        }
         let folder = file.parent().unwrap_or(file);
-        let cell = (run.origin.clone(), run.optimiser.clone());
-        let known = self.cells.entry(cell);
-        let (seeds, of) = known.or_insert_with(|| (HashSet::new(), folder.to_owned()));
+        let is_numbered = run.seed.is_none();
+        let cell = self.cells.entry((run.provenance.clone(), run.optimiser.clone()));
+        let cell = cell.or_insert_with(|| Cell {
+            seeds: HashSet::new(),
+            are_numbered: is_numbered,
+            folder: folder.to_owned(),
+        });
         let on = || {
-            let Origin { suite, function, name, dimension, instance } = &run.origin;
+            let Provenance { suite, function, name, dimension, instance, digest: _ } =
+                &run.provenance;
             let number = |name: &str, n: Option<u64>| n.map(|n| format!(" {name} {n}"));
             let parts = [
                 Some(format!(" {suite}")).filter(|_| !suite.is_empty()),
@@ -128,15 +148,22 @@ impl Collected {
             let on: String = parts.into_iter().flatten().collect();
             format!("`{}` on{on}", run.optimiser.name)
         };
-        if run.seed.is_none() && of != folder {
+        if cell.are_numbered != is_numbered {
             let message = format!(
-                "found runs of {} here and in {}, expected each optimiser's in one folder: import them one at a time",
-                on(),
-                of.display()
+                "found runs of {} with a seed and without, expected all to have one, or none",
+                on()
             );
             return Err(ImportError::of(file, message));
         }
-        let (seed, dimension) = (run.seed.unwrap_or(1), run.origin.dimension.unwrap_or(1));
+        if is_numbered && cell.folder != folder {
+            let message = format!(
+                "found runs of {} here and in {}, expected each optimiser's in one folder: import them one at a time",
+                on(),
+                cell.folder.display()
+            );
+            return Err(ImportError::of(file, message));
+        }
+        let (seed, dimension) = (run.seed.unwrap_or(1), run.provenance.dimension.unwrap_or(1));
         let is_within = run.trace.evaluations <= MOST_EVALUATIONS
             && seed <= LARGEST_SEED
             && (1..=MOST_VARIABLES).contains(&dimension);
@@ -149,9 +176,9 @@ impl Collected {
             );
             return Err(ImportError::of(file, message));
         }
-        self.are_seeds_counted |= run.seed.is_none();
-        let seed = run.seed.unwrap_or(seeds.len() as u64 + 1);
-        if !seeds.insert(seed) {
+        self.are_seeds_counted |= is_numbered;
+        let seed = run.seed.unwrap_or(cell.seeds.len() as u64 + 1);
+        if !cell.seeds.insert(seed) {
             let message = format!("found {} with seed {seed} twice, expected each run once", on());
             return Err(ImportError::of(file, message));
         }
@@ -162,7 +189,7 @@ impl Collected {
             );
             return Err(ImportError::of(file, message));
         }
-        let optimum = self.problems.entry(run.origin.clone()).or_default();
+        let optimum = self.problems.entry(run.provenance.clone()).or_default();
         *optimum = [*optimum, run.optimum].into_iter().flatten().reduce(f64::min);
         self.optimisers.insert(run.optimiser.clone());
         self.runs.push(ReadRun { seed: Some(seed), ..run });
@@ -179,12 +206,6 @@ impl Collected {
         if self.runs.is_empty() {
             return Err(ImportError::of(data, "found no runs, expected at least one"));
         }
-        let without_instance = |run: &ReadRun| Origin { instance: None, ..run.origin.clone() };
-        let mut largest = HashMap::new();
-        for run in &self.runs {
-            let most = largest.entry((without_instance(run), &run.optimiser)).or_insert(1);
-            *most = run.trace.evaluations.max(*most);
-        }
         if self.are_seeds_counted {
             notes.push("the data name no seeds, so runs of an instance are numbered".to_owned());
         }
@@ -195,32 +216,34 @@ impl Collected {
                     .to_owned(),
             );
         }
-        let problems: HashMap<&Origin, usize> =
-            self.problems.keys().enumerate().map(|(i, origin)| (origin, i)).collect();
+        let problems: HashMap<&Provenance, usize> =
+            self.problems.keys().enumerate().map(|(i, provenance)| (provenance, i)).collect();
         let optimisers: HashMap<&ForeignOptimiser, usize> =
             self.optimisers.iter().enumerate().map(|(i, optimiser)| (optimiser, i)).collect();
-        let budget = |run: &ReadRun| {
-            let largest = largest.get(&(without_instance(run), &run.optimiser)).copied();
-            run.budget.or(largest.and_then(NonZeroU64::new)).unwrap_or(NonZeroU64::MIN)
+        let on = |run: &ReadRun| {
+            let provenance = Provenance { instance: None, digest: None, ..run.provenance.clone() };
+            (provenance, optimisers[&run.optimiser])
         };
-        let run = |run: &ReadRun| ForeignRun {
-            problem: problems[&run.origin],
+        let mut most = HashMap::new();
+        for run in &self.runs {
+            let known = most.entry(on(run)).or_insert(NonZeroU64::MIN);
+            *known = NonZeroU64::new(run.trace.evaluations).map_or(*known, |own| own.max(*known));
+        }
+        let run = |run: ReadRun| ForeignRun {
+            problem: problems[&run.provenance],
             optimiser: optimisers[&run.optimiser],
             seed: run.seed.unwrap_or_default(),
-            budget: budget(run),
+            budget: run.budget.unwrap_or_else(|| most[&on(&run)]),
             evaluations: run.trace.evaluations,
-            trace: run.trace.steps.clone(),
+            trace: run.trace.steps,
         };
-        let runs = self.runs.iter().map(run).collect();
-        let problem = |(origin, optimum): (&Origin, &Option<f64>)| ForeignProblem {
-            origin: origin.clone(),
-            optimum: *optimum,
-        };
+        let runs = self.runs.into_iter().map(run).collect();
+        let problem = |(provenance, optimum)| ForeignProblem { provenance, optimum };
         let foreign = Foreign {
             format,
             from: name_of(data),
-            problems: self.problems.iter().map(problem).collect(),
-            optimisers: self.optimisers.iter().cloned().collect(),
+            problems: self.problems.into_iter().map(problem).collect(),
+            optimisers: self.optimisers.into_iter().collect(),
             runs,
         };
         Ok(Import { foreign, notes })

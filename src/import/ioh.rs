@@ -15,9 +15,9 @@ use serde_json::Value;
 use super::collected::{Collected, ReadRun, Rows};
 use super::error::ImportError;
 use super::files::{beside, files, open};
-use super::lines::Lines;
+use super::lines::{Lines, cut};
 use super::{Import, bbob};
-use crate::experiment::{DataFormat, EXPORTED_SUITE, ForeignOptimiser, Origin};
+use crate::experiment::{DataFormat, EXPORTED_SUITE, ForeignOptimiser, Provenance};
 
 /// The largest index \[bytes\].
 const LARGEST_INDEX: u64 = 1 << 30;
@@ -63,6 +63,7 @@ struct IndexedRun {
     seed: Option<Value>,
     budget: Option<Value>,
     optimum: Option<f64>,
+    digest: Option<Value>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -117,17 +118,30 @@ fn read_index(path: &Path, collected: &mut Collected) -> Result<(), ImportError>
                 best.push(evaluation.clamp(1, run.evals.max(1)), cost);
                 rows = rows.with(best);
             }
-            let origin = Origin {
+            let provenance = Provenance {
                 suite: index.suite().to_owned(),
                 function: Some(index.function_id),
                 name: index.function_name.clone(),
                 dimension: Some(scenario.dimension),
                 instance: Some(run.instance),
+                digest: index.digest(run),
+            };
+            let no_seed = |found: &Value| {
+                let (found, run) = (cut(&found.to_string()), place + 1);
+                let message = format!(
+                    "found the seed `{found}` of run {run} of {}, expected a whole number from 0",
+                    scenario.path
+                );
+                ImportError::of(path, message)
             };
             let read = ReadRun {
-                origin,
+                provenance,
                 optimiser: optimiser.clone(),
-                seed: run.seed.as_ref().and_then(whole),
+                seed: run
+                    .seed
+                    .as_ref()
+                    .map(|seed| whole(seed).ok_or_else(|| no_seed(seed)))
+                    .transpose()?,
                 budget: index.budget(run),
                 optimum: index.optimum(run),
                 trace: rows.into_trace(run.evals),
@@ -155,8 +169,14 @@ impl Index {
 
     /// What a run was allowed, as an export of this program tells; what others mean by the word is not known.
     fn budget(&self, run: &IndexedRun) -> Option<NonZeroU64> {
-        let told = run.budget.as_ref().or_else(|| self.attribute("budget"));
-        told.and_then(whole).and_then(NonZeroU64::new).filter(|_| self.suite == EXPORTED_SUITE)
+        let budget = run.budget.as_ref().or_else(|| self.attribute("budget"));
+        budget.and_then(whole).and_then(NonZeroU64::new).filter(|_| self.suite == EXPORTED_SUITE)
+    }
+
+    /// What tells the instance from all others, as an export of this program says.
+    fn digest(&self, run: &IndexedRun) -> Option<String> {
+        let digest = run.digest.as_ref().and_then(Value::as_str)?;
+        Some(digest.to_owned()).filter(|_| self.suite == EXPORTED_SUITE)
     }
 
     /// The least cost known: of differences from the optimum it is 0.
@@ -210,8 +230,8 @@ fn parse(path: &Path) -> Result<Index, ImportError> {
     })
 }
 
-/// The runs of a table, one at a time. A run begins below a heading or, where headings are left out, where evaluations begin
-/// anew.
+/// The runs of a table, one at a time. A run begins below a heading or, where headings are left out, with the first evaluation or one
+/// before the last.
 struct Tables {
     lines: Lines,
     columns: Option<Columns>,
@@ -257,7 +277,7 @@ impl Tables {
                 continue;
             }
             let (evaluation, cost) = self.row(&line)?;
-            if count > 0 && evaluation < rows.last() {
+            if count > 0 && (evaluation == 1 || evaluation < rows.last()) {
                 self.begun = Some((evaluation, cost));
                 break;
             }

@@ -11,14 +11,14 @@ use super::collected::{Collected, MOST_ROWS, ReadRun, Trace};
 use super::error::ImportError;
 use super::files::{files, open};
 use super::lines::cut;
-use crate::experiment::{DataFormat, ForeignOptimiser, ForeignStep, Origin};
+use crate::experiment::{DataFormat, ForeignOptimiser, ForeignStep, Provenance};
 
 /// The columns that a table has to have, and those that it may have.
 const REQUIRED: [&str; 5] = ["problem", "optimiser", "seed", "evaluation", "cost"];
 const OPTIONAL: [&str; 4] = ["dimension", "instance", "budget", "seconds"];
 
 /// A run by what tells it from others: instance, optimiser, seed.
-type RunId = (Origin, String, u64);
+type RunId = (Provenance, String, u64);
 
 /// What tables say of a run.
 #[derive(Debug, Default)]
@@ -37,10 +37,10 @@ pub(super) fn read(data: &Path) -> Result<Import, ImportError> {
     }
     let mut collected = Collected::default();
     let mut lacks_dimension = false;
-    for ((origin, name, seed), LongRun { budget, rows }) in runs {
+    for ((provenance, name, seed), LongRun { budget, rows }) in runs {
         let mut evaluations: Vec<u64> = rows.iter().map(|row| row.evaluation).collect();
         evaluations.sort_unstable();
-        let of = format!("the run of `{name}` on `{}` with seed {seed}", origin.name);
+        let of = format!("the run of `{name}` on `{}` with seed {seed}", provenance.name);
         let mut pairs = evaluations.iter().zip(evaluations.iter().skip(1));
         if let Some((twice, _)) = pairs.find(|(a, b)| a == b) {
             let message = format!("found the evaluation {twice} of {of} twice, expected it once");
@@ -53,10 +53,10 @@ pub(super) fn read(data: &Path) -> Result<Import, ImportError> {
             );
             return Err(ImportError::of(data, message));
         }
-        lacks_dimension |= origin.dimension.is_none();
+        lacks_dimension |= provenance.dimension.is_none();
         let optimiser = ForeignOptimiser { name, info: String::new() };
         let trace = Trace::of(rows, last);
-        let run = ReadRun { origin, optimiser, seed: Some(seed), budget, optimum: None, trace };
+        let run = ReadRun { provenance, optimiser, seed: Some(seed), budget, optimum: None, trace };
         collected.add(run, data)?;
     }
     let note =
@@ -168,7 +168,7 @@ impl Row<'_> {
         if optimiser.is_empty() {
             return Err(self.wrong("optimiser", optimiser, "a name"));
         }
-        let origin = Origin {
+        let provenance = Provenance {
             name: problem.to_owned(),
             dimension: self.whole(0)?.map(NonZeroU64::get),
             instance: match self.given(1) {
@@ -177,7 +177,7 @@ impl Row<'_> {
                 }
                 None => None,
             },
-            ..Origin::default()
+            ..Provenance::default()
         };
         let seed = seed.parse().map_err(|_| self.wrong("seed", seed, "a whole number from 0"))?;
         let evaluation: NonZeroU64 = evaluation
@@ -192,7 +192,7 @@ impl Row<'_> {
             None => None,
         };
         let step = ForeignStep { evaluation: evaluation.get(), cost, seconds };
-        Ok(((origin, optimiser.to_owned(), seed), self.whole(2)?, step))
+        Ok(((provenance, optimiser.to_owned(), seed), self.whole(2)?, step))
     }
 
     /// What stands in an optional column, if anything does.

@@ -15,7 +15,7 @@ pub(crate) fn data(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/import").join(name).display().to_string()
 }
 
-fn ok(folder: &Folder, args: &[&str]) -> String {
+pub(crate) fn ok(folder: &Folder, args: &[&str]) -> String {
     let output = folder.run(args);
     assert!(output.status.success(), "{args:?}: {}", stderr(&output));
     stdout(&output) + &stderr(&output)
@@ -29,7 +29,7 @@ pub(crate) fn imported(format: &str) -> (Folder, String) {
 }
 
 /// The rows of a CSV table, by the names of columns.
-fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
+pub(crate) fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
     let text =
         fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     csv::Reader::from_reader(text.as_bytes()).deserialize().map(Result::unwrap).collect()
@@ -92,6 +92,23 @@ fn iohprofiler_data_are_read_as_they_are() {
     assert!((best - 0.231_787_250_178_264_38).abs() < 1e-10);
     let rosenbrock = run("bbob f8 Rosenbrock dimension=2 instance=2", "narrow", 2);
     assert_eq!(traces[&rosenbrock].last().unwrap().0, 60);
+}
+
+/// A run of one evaluation ends where the next begins, with a heading between them or without.
+#[test]
+fn runs_of_one_evaluation_are_told_apart() {
+    let index = "{\"suite\": \"\", \"function_id\": 1, \"algorithm\": {\"name\": \"a\"}, \"scenarios\": [{\"dimension\": 2,\
+        \"path\": \"a.dat\", \"runs\": [{\"instance\": 1, \"evals\": 1}, {\"instance\": 1, \"evals\": 1}, {\"instance\": 1,\
+        \"evals\": 3}]}]}";
+    let folder = Folder::new()
+        .with("IOHprofiler_f1.json", index)
+        .with("a.dat", "evaluations raw_y\n1 5\n1 4\n1 3\n3 2\n");
+    ok(&folder, &["import", "--format", "ioh", "IOHprofiler_f1.json", "--out", "theirs"]);
+    let traces = traces(&folder.path().join("theirs"));
+    let on = "f1 dimension=2 instance=1";
+    assert_eq!(traces[&run(on, "a", 1)], [(1, 5.0)]);
+    assert_eq!(traces[&run(on, "a", 2)], [(1, 4.0)]);
+    assert_eq!(traces[&run(on, "a", 3)], [(1, 3.0), (3, 2.0)]);
 }
 
 /// The rows of `.dat` on the sphere are kept, with those of `.tdat` that are improvements, too.

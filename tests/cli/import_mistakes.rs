@@ -79,6 +79,16 @@ fn mistakes_are_named_and_leave_nothing() {
             ioh("\"evals\": 60 -> \"evals\": 59"),
             "found the evaluation 60 in run 1, expected 59",
         ),
+        (
+            "ioh",
+            ioh("{\"instance\": 1, -> {\"instance\": 1, \"seed\": 1.5,"),
+            "found the seed `1.5` of run 1 of data_f1_Sphere/IOHprofiler_f1_DIM2.dat, expected a whole number",
+        ),
+        (
+            "ioh",
+            ioh("{\"instance\": 1, -> {\"instance\": 1, \"seed\": 2,"),
+            "with a seed and without, expected all to have one, or none",
+        ),
         ("ioh", table("evaluations raw_y\n1 2.5\n"), "found 1 runs, expected 4"),
         ("ioh", table("evaluations raw_y\n1 2.5\n2 x\n"), "DIM2.dat:3: found `x`, expected a cost"),
         (

@@ -8,7 +8,7 @@ use polars::prelude::*;
 use super::name::is_key;
 use super::stack::only;
 use crate::digest::digest;
-use crate::experiment::record::IMPORTED;
+use crate::experiment::record::IMPORTED_STATUS;
 use crate::experiment::schema::{Cell, Column, FORMAT, clocks, runs, traces};
 
 /// For each key the lists of its run that have a length of their own, by their columns.
@@ -112,7 +112,7 @@ fn check_runs(
 /// Whether all runs of a table were imported: a batch has no others beside.
 fn are_imported(frame: &DataFrame) -> bool {
     let statuses = texts(frame, runs::STATUS);
-    statuses.is_ok_and(|all| all.iter().all(|status| status == Some(IMPORTED)))
+    statuses.is_ok_and(|all| all.iter().all(|status| status == Some(IMPORTED_STATUS)))
 }
 
 /// Whether lists of numbers have none missing, points are finite, and all have their lengths.

@@ -73,6 +73,18 @@ pub enum StoreError {
     /// A table may be whole and cannot be read.
     #[error("{0}; until it can be, it is not known which runs are missing")]
     Unreadable(Damage),
+    /// A run that a plan of imported runs has is not among those that were read.
+    #[error(
+        "found no run of `{optimiser}` on `{instance}` with seed {seed} in the data, expected one as planned"
+    )]
+    NotRead {
+        /// The label of its instance.
+        instance: String,
+        /// The label of its optimiser.
+        optimiser: String,
+        /// Its seed.
+        seed: u64,
+    },
     /// A record could not be made into a table, or a table not be looked through.
     #[error("cannot make a table of a run")]
     Record(#[source] Cause),
@@ -147,8 +159,12 @@ impl Store {
         plan: &Plan,
         foreign: &Foreign,
     ) -> Result<(), StoreError> {
-        let found = foreign.in_order_of(plan);
-        let runs: Vec<(&RunSpec, &ForeignRun)> = plan.runs.iter().zip(found).collect();
+        let missing = |spec: &RunSpec| StoreError::NotRead {
+            instance: plan.instances[spec.instance].label.clone(),
+            optimiser: plan.optimisers[spec.optimiser].label.clone(),
+            seed: spec.seed,
+        };
+        let runs = foreign.paired(plan).map_err(missing)?;
         let mut rows = 0;
         let batches = runs.chunk_by(|_, (_, next)| {
             // Counted from the first run of a batch on.

@@ -8,7 +8,7 @@ use super::identity::Identity;
 use super::value::Value;
 
 /// The kind of imported subjects.
-pub(super) const IMPORTED: &str = "imported";
+pub(super) const IMPORTED_KIND: &str = "imported";
 
 /// The name of the suite in exported files.
 pub const EXPORTED_SUITE: &str = "driftless";
@@ -19,7 +19,7 @@ pub(super) const WORKED_OUT: RangeInclusive<u32> = 10_001..=65_535;
 /// What determines an imported instance, and tells it from all others.
 #[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Origin {
+pub struct Provenance {
     /// The suite; empty where the data name none.
     pub suite: String,
     /// The function's number in the suite; none where functions have none.
@@ -30,9 +30,13 @@ pub struct Origin {
     pub dimension: Option<u64>,
     /// The instance's number, if it has one.
     pub instance: Option<u32>,
+    /// What tells the exported instance from all others, where the data are an export of this program that has it: numbers that are
+    /// worked out may be the same for several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub digest: Option<String>,
 }
 
-impl Origin {
+impl Provenance {
     /// Whether an export of this program has made the data.
     pub fn is_exported(&self) -> bool {
         self.suite == EXPORTED_SUITE && self.function.is_some()
@@ -56,15 +60,14 @@ impl Origin {
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
     }
 
-    /// What tells the instance from others in tables, and the group of those that differ in their number alone.
-    pub(super) fn labels(&self) -> [String; 2] {
-        let with = |text: String, name: &str, value: Option<u64>| match value {
-            Some(value) if text.is_empty() => format!("{name}={value}"),
-            Some(value) => format!("{text} {name}={value}"),
-            None => text,
-        };
-        let group = with(self.subject(), "dimension", self.dimension);
-        [with(group.clone(), "instance", self.instance.map(u64::from)), group]
+    /// What tells the instance from others in tables, but for those of the same number.
+    pub(super) fn label(&self) -> String {
+        with(self.group(), "instance", self.instance.map(u64::from))
+    }
+
+    /// The group of those that differ in their number alone.
+    pub(super) fn group(&self) -> String {
+        with(self.subject(), "dimension", self.dimension)
     }
 
     /// The function alone.
@@ -79,5 +82,14 @@ impl Origin {
     /// All of it.
     pub(super) fn identity(&self) -> Identity {
         Identity::of(serde_json::to_value(self).unwrap_or_default())
+    }
+}
+
+/// A text and, behind it, a value with its name, if there is one.
+fn with(text: String, name: &str, value: Option<u64>) -> String {
+    match value {
+        Some(value) if text.is_empty() => format!("{name}={value}"),
+        Some(value) => format!("{text} {name}={value}"),
+        None => text,
     }
 }
