@@ -52,6 +52,20 @@ impl Kind {
     }
 }
 
+/// Whether a file that is read as a task is one.
+pub(super) fn expect_task(document: &Document, verb: &str) -> Result<(), CliError> {
+    let found = match Kind::of(document)? {
+        Kind::Task => return Ok(()),
+        Kind::Robot => "a robot",
+        Kind::Replay => "a motion to replay",
+        Kind::Experiment => "an experiment",
+    };
+    Err(CliError::Usage {
+        message: format!("{} is {found}, and `{verb}` takes a task", document.path.display()),
+        help: None,
+    })
+}
+
 impl Check {
     pub(super) fn execute(self) -> Result<(), CliError> {
         let document = Document::read(&self.file)?;
@@ -91,6 +105,11 @@ fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError>
     let plan = experiment.plan()?;
     warn_of_subjects(&plan);
     warn_of_budgets(&plan);
+    for (command, _) in experiment.programs() {
+        if let Err(failure) = command.check_program() {
+            note!("warning: {failure}");
+        }
+    }
     let own = plan.optimisers.iter().map(|entrant| entrant.seeds.unwrap_or(experiment.seeds()));
     let seeds = match (own.clone().min(), own.max()) {
         (Some(fewest), Some(most)) if fewest < most => format!("{fewest} to {most}"),
@@ -126,7 +145,7 @@ fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError>
 #[cfg(feature = "harness")]
 fn words_for_shards(sensible: crate::experiment::Sensible, workers: usize) -> String {
     let crate::experiment::Sensible { fewest, most, idle_with_one_each, .. } = sensible;
-    let idle = 100.0 * idle_with_one_each;
+    let idle = (100.0 * idle_with_one_each).max(0.0);
     let range = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
     format!(
         "{range} shards make sense for {workers} workers of a scheduler; with one each they would be idle for {idle:.0} % \

@@ -25,6 +25,9 @@ pub(super) struct Chosen {
     /// Evaluations per run, instead of the file's
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     pub(super) budget: Option<u64>,
+    /// Do again what is stored and has failed
+    #[arg(long)]
+    pub(super) retry: bool,
     /// Start the programs that a file of results names, now and later
     #[arg(long)]
     trust: bool,

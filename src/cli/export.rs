@@ -65,6 +65,13 @@ impl Export {
     fn write_runs(&self, format: SuiteFormat, plan: &Plan, runs: &[Run]) -> Result<(), CliError> {
         let suite = Suite::new(plan, runs)?;
         write_suite(&self.out, format, &suite)?;
+        let failed = runs.iter().filter(|run| !run.cost.is_finite()).count();
+        if failed > 0 {
+            note!(
+                "warning: {} failed; what they had found is exported like that of others, which the formats do not tell apart",
+                plural(failed, "run")
+            );
+        }
         if suite.renumbered > 0 {
             note!(
                 "note: {} functions or instances have the next free number, as another of this experiment has their own; \

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use clap::Args;
 
+use super::check::expect_task;
 use super::family::FamilyOptions;
 use super::found::{Found, OtherFamily, Spent};
 use super::motion::MotionFiles;
@@ -83,6 +84,7 @@ impl Plan {
         self.files.check()?;
         let settings = find_optimiser(&self.optimiser)?;
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;
+        expect_task(&document, "plan")?;
         let TaskFile { task, trajectory } = TaskFile::read(&document)?;
         let is_named = self.family.is_named() || trajectory.states_family();
         // Other optimisers get nowhere among hundreds of variables.

@@ -33,9 +33,6 @@ pub(super) struct Run {
     /// Do again what is already stored
     #[arg(long)]
     fresh: bool,
-    /// Do again what is stored and has failed
-    #[arg(long)]
-    retry: bool,
     /// Say nothing of runs that end as they should
     #[arg(long)]
     quiet: bool,
@@ -105,7 +102,7 @@ impl Run {
                 earlier.join("experiment.toml").display()
             );
         }
-        self.run_missing(&folder, shard)?;
+        let is_idle = self.run_missing(&folder, shard)? == 0;
         let (plan, stored) = (&folder.plan, folder.store.keys()?);
         let stored = plan.runs.iter().filter(|run| stored.contains(&run.key)).count();
         match shard {
@@ -119,6 +116,11 @@ impl Run {
                 );
                 Ok(())
             }
+            // The task that stored the last run has made the report.
+            Some(shard) if is_idle => {
+                say!("shard {shard}: nothing is left to do");
+                Ok(())
+            }
             _ => {
                 if let Some(kept) = report(&folder.plan, &[&folder.store], &Target::of(&path))? {
                     note!("note: {kept}; `driftless report --replace` replaces it");
@@ -128,9 +130,10 @@ impl Run {
         }
     }
 
-    fn run_missing(&self, folder: &Folder, shard: Option<Shard>) -> Result<(), CliError> {
+    /// Does what is missing; how many runs that were.
+    fn run_missing(&self, folder: &Folder, shard: Option<Shard>) -> Result<usize, CliError> {
         let (watch, mine, store) = (watch(), folder.runs(shard), &folder.store);
-        if self.fresh || self.retry {
+        if self.fresh || self.chosen.retry {
             let mut again: HashSet<&str> = mine.iter().map(|run| run.key.as_str()).collect();
             if !self.fresh {
                 let failures = standing(&folder.plan, store)?.failures;
@@ -160,7 +163,7 @@ impl Run {
         if watch.is_interrupted() {
             let stored = store.keys()?;
             let stored = mine.iter().filter(|run| stored.contains(&run.key)).count();
-            let without = match (self.fresh, self.retry) {
+            let without = match (self.fresh, self.chosen.retry) {
                 (true, _) => " without --fresh",
                 (false, true) => " without --retry",
                 (false, false) => "",
@@ -171,7 +174,7 @@ impl Run {
                 folder.path().display()
             )));
         }
-        Ok(())
+        Ok(count)
     }
 }
 

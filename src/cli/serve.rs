@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
+use super::check::expect_task;
 use super::family::FamilyOptions;
 use super::found::Found;
 use super::motion::MotionFiles;
@@ -49,6 +50,7 @@ impl Serve {
         self.files.check()?;
         let formulation = self.formulation()?;
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;
+        expect_task(&document, "serve")?;
         let TaskFile { task, trajectory } = TaskFile::read(&document)?;
         let file = TaskFile { trajectory: self.family.over(trajectory, false)?, task };
         let refused = |error| document.error_at(0..0, error, None);

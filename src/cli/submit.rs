@@ -132,6 +132,7 @@ impl Submit {
             let number = number.map(|number| number.to_string());
             words.extend(number.into_iter().flat_map(|number| [option.to_owned(), number]));
         }
+        words.extend(self.chosen.retry.then(|| "--retry".to_owned()));
         if matches!(self.to, Scheduler::Parallel) {
             check_braces(&words)?;
         }

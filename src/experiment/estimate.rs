@@ -29,7 +29,7 @@ const WITH_DERIVATIVES: u32 = 4;
 /// Instances of each kind that are tried.
 const TRIED: usize = 3;
 
-/// What a run is taken to last where no trial tells, as where all runs start programs.
+/// What a run that starts a program is taken to last at least: long enough that many shards make sense.
 const UNKNOWN: Duration = Duration::from_mins(1);
 
 /// How long the runs of a plan take.
@@ -83,11 +83,12 @@ impl Estimate {
     }
 
     /// How many shards make sense for so many workers that do `jobs` runs at a time each. Runs that were not tried are taken to
-    /// last as long as the mean of the others.
+    /// last a minute, or as long as the mean of the others if that is longer.
     pub fn shards(&self, workers: usize, jobs: usize) -> Sensible {
         let tried = self.runs.iter().flatten().count();
         let all: f64 = self.runs.iter().flatten().map(Duration::as_secs_f64).sum();
         let mean = Duration::try_from_secs_f64(all / tried as f64).unwrap_or(UNKNOWN);
+        let mean = mean.max(UNKNOWN);
         let runs: Vec<Duration> = self.runs.iter().map(|run| run.unwrap_or(mean)).collect();
         sensible(&runs, workers, jobs)
     }

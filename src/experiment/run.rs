@@ -58,7 +58,14 @@ impl Run {
     }
 }
 
-/// The run with the lowest cost, unless all failed.
+/// Share of a cost by which one that an imported run tells may be lower than the same cost, certified.
+const UNCERTIFIED: f64 = 1e-6;
+
+/// The run with the lowest cost, unless all failed. One whose point is not known is no better than the same cost with a point.
 pub fn best_run<'a>(runs: impl Iterator<Item = &'a Run>) -> Option<&'a Run> {
-    runs.filter(|run| run.cost.is_finite()).min_by(|a, b| a.cost.total_cmp(&b.cost))
+    let found: Vec<&Run> = runs.filter(|run| run.cost.is_finite()).collect();
+    let lowest = found.iter().copied().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    let same = lowest.cost + UNCERTIFIED * lowest.cost.abs();
+    let known = found.into_iter().filter(|run| !run.x.is_empty() && run.cost <= same);
+    known.min_by(|a, b| a.cost.total_cmp(&b.cost)).or(Some(lowest))
 }

@@ -57,13 +57,13 @@ impl<'a> Session<'a> {
 
     /// Says why the search is over, unless it ended by itself.
     pub(super) fn tell_end(&self, outcome: &Result<(), Stop>) {
-        let reason = match outcome {
+        let message = match outcome {
             Ok(()) => return,
-            Err(Stop::BudgetSpent) => "budget",
-            Err(Stop::Interrupted) => "interrupted",
-            Err(_) => "failed",
+            Err(Stop::BudgetSpent) => serde_json::json!({ "stop": "budget" }),
+            Err(Stop::Interrupted) => serde_json::json!({ "stop": "interrupted" }),
+            Err(stop) => serde_json::json!({ "stop": "failed", "error": stop.to_string() }),
         };
-        self.peer.say(answer::line(&serde_json::json!({ "stop": reason })));
+        self.peer.say(answer::line(&message));
     }
 
     fn answer(&mut self, oracle: &mut Oracle<'_>) -> Result<(), Stop> {

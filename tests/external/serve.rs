@@ -131,7 +131,9 @@ fn mistakes_of_a_client_are_told() {
         assert_eq!(output.status.code(), Some(1), "{said}");
         assert!(said.contains(told), "{sent}: {said}");
         let last = String::from_utf8(output.stdout).unwrap();
-        assert_eq!(last.lines().last(), Some("{\"stop\":\"failed\"}"), "{last}");
+        let last: Value = serde_json::from_str(last.lines().last().unwrap()).unwrap();
+        assert_eq!(last["stop"], json!("failed"));
+        assert!(last["error"].as_str().unwrap().contains(told), "{last}");
     }
     let output = serve(&["--formulation", "polar"]).wait_with_output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
