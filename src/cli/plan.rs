@@ -20,7 +20,7 @@ use crate::reorientation::{
     Accuracy, BestKnown, FamilyName, FamilySpec, Formulated, Formulation, Reach, Reorientation,
     SearchedFamily, TaskFile, TaskProblem,
 };
-use crate::search::{BoundsError, Oracle, Rng, Stop};
+use crate::search::{BoundsError, Failure, Oracle, Rng, Stop};
 use crate::task::{Task, TaskTable};
 use crate::trajectory::{Family, Spline};
 
@@ -296,6 +296,9 @@ pub(super) fn search<F: Family>(
     let Some(best) = oracle.best().cloned() else {
         return Err(match failure {
             Some(failure) => CliError::Search(failure),
+            None if oracle.evaluations() == 0 && !interrupted => {
+                CliError::Search(Failure::new("no cost was asked for"))
+            }
             None if interrupted => CliError::Interrupted("no motion was found before".to_owned()),
             None => CliError::NoMotion,
         });

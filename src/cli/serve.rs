@@ -1,5 +1,6 @@
 //! `driftless serve`.
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -104,7 +105,8 @@ impl Serve {
     /// The other end of the line.
     fn client(&self) -> Result<Client, CliError> {
         let Some(port) = self.listen else { return Ok(Client::on_standard_streams()?) };
-        let own = std::env::var(TOKEN).ok().filter(|token| !token.is_empty());
+        let own = std::env::var_os(TOKEN).filter(|token| !token.is_empty());
+        let own = own.map(|token| usable(&token)).transpose()?;
         let is_known = own.is_some();
         let socket = Socket::bind(port, own)?;
         if is_known {
@@ -126,7 +128,11 @@ impl Serve {
         let client = self.client()?;
         let mut found = {
             let _bar = Bar::new(self.budget, watch());
-            search(&client, problem, problem, longest, self.seed, self.budget)?
+            let found = search(&client, problem, problem, longest, self.seed, self.budget);
+            found.inspect_err(|error| match error {
+                CliError::Search(failure) => client.refuse(failure.reason()),
+                other => client.refuse(&other.to_string()),
+            })?
         };
         found.walls = walls(&found);
         let (name, known) = (client.name(), BestKnown::of(found.problem.task()));
@@ -144,4 +150,14 @@ impl Serve {
         }
         found.failure.map_or(Ok(()), |failure| Err(CliError::Search(failure)))
     }
+}
+
+/// A token that can stand in a line.
+fn usable(token: &OsStr) -> Result<String, CliError> {
+    let is_plain =
+        |token: &&str| token.len() <= 1000 && token.chars().all(|c| c.is_ascii_graphic());
+    token.to_str().filter(is_plain).map(str::to_owned).ok_or_else(|| CliError::Usage {
+        message: format!("{TOKEN} is no token, expected 1000 letters, digits and signs at most"),
+        help: None,
+    })
 }

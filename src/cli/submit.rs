@@ -32,7 +32,7 @@ pub(super) struct Submit {
     /// Shards, each a task of the scheduler's [default: as many as make sense]
     #[arg(long, value_name = "N")]
     shards: Option<NonZeroUsize>,
-    /// Tasks at a time, by which the default of --shards goes; HyperQueue has as many as its workers take [default: of GNU
+    /// Tasks at a time, by which the default of --shards goes; `HyperQueue` has as many as its workers take [default: of GNU
     /// parallel as many as there are processors for; of others no limit, and shards that suit 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     workers: Option<u16>,

@@ -30,12 +30,16 @@ pub(super) fn tell_programs(
     for program in &told {
         note!("note: this experiment starts {program}");
     }
+    // Of a command without files, such as a module of an interpreter, it is not known what it starts.
+    let is_known = experiment.programs().all(|(command, _)| !command.files().is_empty());
     let digest = sha256(identities.into_iter().collect::<String>().as_bytes());
-    if told.is_empty() || !is_from_results || is_remembered(&digest) {
+    if told.is_empty() || !is_from_results || is_known && is_remembered(&digest) {
         return Ok(());
     }
     if is_trusted || confirmed("Start what these results name? [y/N] ") {
-        if let Err(error) = remember(&digest) {
+        if !is_known {
+            note!("note: this is not remembered, as some of these programs name no files");
+        } else if let Err(error) = remember(&digest) {
             note!("warning: this cannot be remembered: {error}");
         }
         return Ok(());
@@ -49,7 +53,8 @@ pub(super) fn tell_programs(
 
 /// All that determines which program a command starts.
 fn identity_of(command: &Command) -> String {
-    format!("{:?} {:?} {:?}\n", command.words(), command.folder(), command.files())
+    let folder = command.folder().display();
+    format!("{:?} {folder} {:?}\n", command.words(), command.files())
 }
 
 /// The file of what was trusted, in no folder that may come from others.
@@ -67,10 +72,12 @@ fn is_remembered(digest: &str) -> bool {
 /// Remembers what was trusted.
 fn remember(digest: &str) -> std::io::Result<()> {
     let path = memory().ok_or_else(|| std::io::Error::other("found no home folder"))?;
-    fs::create_dir_all(folder_of(&path))?;
-    let mut file = fs::OpenOptions::new().append(true).create(true).open(path)?;
-    // In one piece, as others may do the same.
-    file.write_all(format!("{digest}\n").as_bytes())
+    let written = fs::create_dir_all(folder_of(&path)).and_then(|()| {
+        let mut file = fs::OpenOptions::new().append(true).create(true).open(&path)?;
+        // In one piece, as others may do the same.
+        file.write_all(format!("{digest}\n").as_bytes())
+    });
+    written.map_err(|error| std::io::Error::other(format!("{}: {error}", path.display())))
 }
 
 /// Asks the user, where there is one.

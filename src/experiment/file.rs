@@ -183,11 +183,13 @@ impl Experiment {
         for entry in &self.field {
             if let Some((command, _)) = entry.entrant.program() {
                 let error = |failure| self.document.error_at(entry.place.clone(), failure, None);
-                command.check_program().map_err(error)?;
+                command.check_program().and_then(|()| command.check_files()).map_err(error)?;
             }
         }
         for problem in self.instances.iter().filter_map(ExternalProblem::of) {
             let error = |failure| self.document.error_at(problem.place(), failure, None);
+            let (command, _) = problem.program();
+            command.check_program().and_then(|()| command.check_files()).map_err(error)?;
             problem.ask().map_err(error)?;
         }
         Ok(())

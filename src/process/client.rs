@@ -22,6 +22,8 @@ pub struct Client {
 struct Talk {
     conversation: Conversation,
     name: Option<String>,
+    /// Whether it was told that its search is over.
+    is_told: bool,
 }
 
 impl Client {
@@ -37,12 +39,22 @@ impl Client {
 
     fn of(guest: Guest) -> Self {
         let conversation = Conversation::with_guest(guest);
-        Self { talk: Mutex::new(Talk { conversation, name: None }) }
+        Self { talk: Mutex::new(Talk { conversation, name: None, is_told: false }) }
     }
 
     /// What it calls itself.
     pub fn name(&self) -> String {
         self.talk().name.clone().unwrap_or_else(|| "client".to_owned())
+    }
+
+    /// Says that its search has come to nothing, unless that was said, and nothing more.
+    pub fn refuse(&self, error: &str) {
+        let mut talk = self.talk();
+        if !talk.is_told {
+            talk.conversation
+                .say(answer::line(&serde_json::json!({ "stop": "failed", "error": error })));
+        }
+        talk.conversation.close();
     }
 
     /// Says what its search has come to, and nothing more.
@@ -59,11 +71,12 @@ impl Client {
 
 impl Optimiser for Client {
     fn minimise(&self, oracle: &mut Oracle<'_>, rng: &mut Rng) -> Result<(), Stop> {
-        let Talk { conversation, name } = &mut *self.talk();
+        let Talk { conversation, name, is_told } = &mut *self.talk();
         conversation.say(opening(oracle, rng, &serde_json::json!({})));
         let mut session = Session::new(conversation);
         let outcome = session.run(oracle);
         session.tell_end(&outcome);
+        *is_told = outcome.is_err();
         *name = session.name;
         outcome
     }

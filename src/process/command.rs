@@ -128,7 +128,7 @@ impl Command {
     }
 
     /// Whether the files are what they were when the command was made.
-    pub(super) fn check_files(&self) -> Result<(), Failure> {
+    pub(crate) fn check_files(&self) -> Result<(), Failure> {
         for (name, digest) in &self.files {
             let path = self.folder.join(name);
             let found = digest_of(&path);
@@ -136,7 +136,8 @@ impl Command {
             match found {
                 Err(error) => return Err(format!("cannot read {path}: {error}").into()),
                 Ok(found) if found != *digest => {
-                    let told = format!("{path} is not what it was when the experiment was read");
+                    let told =
+                        format!("{path} is not what it was when the experiment was first read");
                     return Err(told.into());
                 }
                 Ok(_) => {}

@@ -12,6 +12,9 @@ use super::lines::Line;
 use super::request::parsed;
 use crate::search::{Failure, Stop};
 
+/// How often a program that does not read its answers is looked at.
+const PAUSE: Duration = Duration::from_millis(1);
+
 /// How often an interruption is looked for.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -139,15 +142,23 @@ impl Conversation {
             }
             let look = Instant::now() + LOOK;
             let until = deadline.map_or(look, |deadline| deadline.min(look));
-            let line = match &self.peer {
-                Peer::Process(child) => child.next(until),
-                Peer::Guest(guest) => guest.next(until),
+            let (is_behind, next): (bool, &dyn Fn() -> Option<Line>) = match &self.peer {
+                Peer::Process(child) => (child.is_behind(), &|| child.next(until)),
+                Peer::Guest(guest) => (guest.is_behind(), &|| guest.next(until)),
+            };
+            let line = if is_behind {
+                std::thread::sleep(PAUSE);
+                None
+            } else {
+                next()
             };
             if let Some(line) = line {
                 break line;
             }
             if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
-                return Err(self.failure(&gave_out()).into());
+                let what =
+                    if is_behind { "does not read its answers".to_owned() } else { gave_out() };
+                return Err(self.failure(&what).into());
             }
         };
         match line {

@@ -43,6 +43,11 @@ impl Guest {
         self.lines.say(line);
     }
 
+    /// Whether it does not read what it is told.
+    pub(super) fn is_behind(&self) -> bool {
+        self.lines.is_behind()
+    }
+
     /// The next line, waited for until `deadline`.
     pub(super) fn next(&self, deadline: Instant) -> Option<Line> {
         self.lines.next(deadline)

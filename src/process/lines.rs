@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::io::{BufRead as _, BufReader, Read, Write};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -14,6 +15,9 @@ const LONGEST_LINE: u64 = 1 << 26;
 
 /// Lines that wait to be looked at; whoever says more has to wait.
 const WAITING_LINES: usize = 64;
+
+/// How much may wait to be read by the other side before it is not heard any more \[byte\].
+const MOST_UNREAD: usize = 1 << 24;
 
 /// How much of a log is kept \[byte\].
 const KEPT: usize = 2_000;
@@ -36,13 +40,21 @@ pub(super) enum Line {
 pub(super) struct Lines {
     incoming: Receiver<Line>,
     outgoing: Option<Sender<String>>,
+    /// What was said and is not written yet \[byte\].
+    waiting: Arc<AtomicUsize>,
     said: Arc<Mutex<Tail>>,
+}
+
+/// Lines that are to be written, and how much they are.
+pub(super) struct Outgoing {
+    lines: Receiver<String>,
+    waiting: Arc<AtomicUsize>,
 }
 
 /// The other side, for threads that read and write.
 pub(super) struct Ends {
     pub(super) incoming: SyncSender<Line>,
-    pub(super) outgoing: Receiver<String>,
+    pub(super) outgoing: Outgoing,
     pub(super) said: Arc<Mutex<Tail>>,
 }
 
@@ -52,15 +64,23 @@ impl Lines {
         let (to_incoming, incoming) = sync_channel(WAITING_LINES);
         let (to_outgoing, outgoing) = channel();
         let said = Arc::<Mutex<Tail>>::default();
+        let waiting = Arc::<AtomicUsize>::default();
+        let outgoing = Outgoing { lines: outgoing, waiting: waiting.clone() };
         let ends = Ends { incoming: to_incoming, outgoing, said: said.clone() };
-        (Self { incoming, outgoing: Some(to_outgoing), said }, ends)
+        (Self { incoming, outgoing: Some(to_outgoing), waiting, said }, ends)
     }
 
     /// Says a line, which is written while this side goes on. One that nobody reads any more is lost.
     pub(super) fn say(&self, line: String) {
         if let Some(outgoing) = &self.outgoing {
+            self.waiting.fetch_add(line.len(), Ordering::Relaxed);
             let _ = outgoing.send(line);
         }
+    }
+
+    /// Whether so much waits to be read that nothing more should be asked.
+    pub(super) fn is_behind(&self) -> bool {
+        self.waiting.load(Ordering::Relaxed) > MOST_UNREAD
     }
 
     /// The next line, waited for until `deadline`.
@@ -146,10 +166,12 @@ pub(super) fn read_log(mut log: impl Read, said: &Mutex<Tail>) {
 }
 
 /// Writes lines until there are no more or nobody reads them.
-pub(super) fn write_lines(mut input: impl Write, lines: &Receiver<String>) {
-    while let Ok(line) = lines.recv() {
+pub(super) fn write_lines(mut input: impl Write, outgoing: &Outgoing) {
+    while let Ok(line) = outgoing.lines.recv() {
         if input.write_all(line.as_bytes()).and_then(|()| input.flush()).is_err() {
             break;
         }
+        outgoing.waiting.fetch_sub(line.len(), Ordering::Relaxed);
     }
+    outgoing.waiting.store(0, Ordering::Relaxed);
 }

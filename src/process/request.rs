@@ -21,6 +21,9 @@ struct Message {
     done: Option<bool>,
 }
 
+/// Longest id, which comes back with each answer \[byte\].
+const LONGEST_ID: usize = 1000;
+
 /// What a process asks for.
 #[derive(Debug)]
 pub(super) enum Request {
@@ -42,6 +45,11 @@ impl Request {
         let is_name = |id: &serde_json::Value| id.is_number() || id.is_string();
         if let Some(id) = id.as_ref().filter(|id| !is_name(id)) {
             return Err(format!("sent the id {id}, expected a number or a text").into());
+        }
+        if line.len() > LONGEST_ID
+            && id.as_ref().is_some_and(|id| id.to_string().len() > LONGEST_ID)
+        {
+            return Err(format!("sent an id of more than {LONGEST_ID} characters").into());
         }
         let mut asked = Vec::new();
         asked.extend(x.map(|x| Self::Costs(id.clone(), x)));

@@ -327,6 +327,25 @@ fn runs_of_solvers_that_change_meanwhile_fail() {
     assert!(message.contains("zoo.py is not what it was"), "{message}");
 }
 
+/// Answers that nobody reads do not pile up.
+#[test]
+fn programs_that_do_not_read_are_given_up() {
+    let folder = zoo("", &["does-not-read"]);
+    let file = folder.path().join("zoo.toml");
+    let text =
+        fs::read_to_string(&file).unwrap().replace("timeout = {  }", "timeout = { silence_s = 2 }");
+    fs::write(&file, text).unwrap();
+    let output =
+        driftless(folder.path(), &["run", "zoo.toml", "--out", "out", "--budget", "1000000"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let runs = runs(&folder.path().join("out"));
+    let message = &texts(&runs, "message")[0];
+    assert!(message.contains("does not read its answers"), "{message}");
+    // Of some thousand characters each, 16 MiB are as many answers, and what fits into the pipes beside.
+    let evaluations = counts(&runs, "evaluations")[0];
+    assert!((10_000..40_000).contains(&evaluations), "{evaluations}");
+}
+
 /// `--retry` does again what has failed, and nothing else.
 #[test]
 fn failed_runs_are_done_again() {
@@ -406,12 +425,15 @@ fn programs_of_results_are_started_where_they_are_trusted() {
     let other = driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out"]);
     assert_eq!(other.status.code(), Some(2), "{}", said(&other));
     fs::write(&file, kept).unwrap();
-    // A file that is not what results were made with.
-    fs::remove_dir_all(folder.path().join("out/runs")).unwrap();
+    // A file that is not what results were made with: what they were is kept.
     fs::write(folder.path().join("zoo.py"), "print('{\"hello\": {}}')").unwrap();
-    driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out"]);
-    let messages = texts(&runs(&folder.path().join("out")), "message");
-    assert!(messages[0].contains("zoo.py is not what it was"), "{}", messages[0]);
+    let changed =
+        driftless(folder.path(), &["run", "out/experiment.toml", "--out", "out", "--fresh"]);
+    assert_eq!(changed.status.code(), Some(2));
+    let words = said(&changed).replace(['│', '\n'], " ");
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("zoo.py is not what it was"), "{words}");
+    assert_eq!(counts(&runs(&folder.path().join("out")), "evaluations"), [10]);
 }
 
 /// The programs of docs/solvers that this machine has the languages for, on the problem beside them: each spends its budget.

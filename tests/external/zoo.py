@@ -44,6 +44,9 @@ if how == "says-no-hello":
 say({"hello": {"name": how}})
 if how == "behaves":
     ask_all(10)
+elif how == "does-not-read":
+    while True:
+        say({"id": "k" * 900, "x": point(0)})
 elif how == "fails-once":
     ask_all(5)
     if not os.path.exists("failed-once"):
