@@ -74,20 +74,23 @@ pub(crate) fn write_folder<E: From<FileError>>(
     fill: impl FnOnce(&Path) -> Result<(), E>,
 ) -> Result<(), E> {
     let error = |source| FileError { action: "write", path: path.to_owned(), source };
+    // The folder that is replaced may be the one that relative paths start from.
+    let whole = std::path::absolute(path).map_err(error)?;
     let exists = match fs::read_dir(path).map(|mut entries| entries.next().is_some()) {
         Ok(true) => return Err(error(io::ErrorKind::DirectoryNotEmpty.into()).into()),
         Ok(false) => true,
         Err(e) if e.kind() == io::ErrorKind::NotFound => false,
         Err(e) => return Err(error(e).into()),
     };
-    create_folder(folder_of(path))?;
-    remove_temporary(folder_of(path));
-    let folder = readable_by_all(0o777).tempdir_in(folder_of(path)).map_err(error)?;
+    let around = folder_of(&whole);
+    create_folder(around)?;
+    remove_temporary(around);
+    let folder = readable_by_all(0o777).tempdir_in(around).map_err(error)?;
     fill(folder.path())?;
     if exists {
-        fs::remove_dir(path).map_err(error)?;
+        fs::remove_dir(&whole).map_err(error)?;
     }
-    fs::rename(folder.path(), path).map_err(error)?;
+    fs::rename(folder.path(), &whole).map_err(error)?;
     // The temporary name is gone, so there is nothing left to remove.
     let _ = folder.keep();
     Ok(())

@@ -176,6 +176,15 @@ impl Collected {
             );
             return Err(ImportError::of(file, message));
         }
+        let allowed = run.trace.evaluations..=MOST_EVALUATIONS;
+        if let Some(budget) = run.budget.filter(|budget| !allowed.contains(&budget.get())) {
+            let message = format!(
+                "found the budget {budget} of {}, expected {} at least, its evaluations, and {MOST_EVALUATIONS} at most",
+                on(),
+                run.trace.evaluations
+            );
+            return Err(ImportError::of(file, message));
+        }
         self.are_seeds_counted |= is_numbered;
         let seed = run.seed.unwrap_or(cell.seeds.len() as u64 + 1);
         if !cell.seeds.insert(seed) {

@@ -317,6 +317,19 @@ fn a_long_table_meets_what_it_names() {
 }
 
 /// Imported runs beside the task's: they have no motion, so the best motion shown is one of ours, whatever they found.
+/// An empty folder is replaced also where the command stands in it.
+#[test]
+fn the_present_folder_is_filled() {
+    let folder = Folder::new().with("t.csv", "problem,optimiser,seed,evaluation,cost\np,o,1,1,1\n");
+    let empty = folder.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    let args = ["import", "--format", "csv", "../t.csv", "--out", "../empty"];
+    let output = folder.command(&args).current_dir(&empty).output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(empty.join("experiment.toml").is_file());
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+}
+
 #[test]
 fn imported_runs_stand_beside_motions() {
     let task = "name = 'task'\nseeds = 2\nbudget = { evaluations = 300 }\n[[optimiser]]\nscp = { starts = 1 }\n\
@@ -332,6 +345,11 @@ fn imported_runs_stand_beside_motions() {
     let runs = rows(&folder.path().join("all/tables/runs.csv"));
     assert_eq!(runs.len(), 10);
     assert!(runs.iter().all(|row| row["instance"] == runs[0]["instance"]), "{runs:?}");
+    // Exports hold costs of the search; the same cost with a motion, certified, is shown as the best.
+    let best = rows(&folder.path().join("all/tables/best.csv"));
+    assert_eq!(best.len(), 1);
+    let duration = best[0].iter().find(|(heading, _)| heading.starts_with("t_f"));
+    assert!(duration.is_some_and(|(_, value)| !value.is_empty()), "{best:?}");
     let limits = rows(&folder.path().join("all/tables/first-feasible.csv"));
     assert_eq!(limits.len(), 2, "{limits:?}");
     let page = fs::read_to_string(folder.path().join("all/report.html")).unwrap();

@@ -71,6 +71,14 @@ fn mistakes_are_named_and_leave_nothing() {
     let head = "suite = 'x', funcId = 1, DIM = 2, algId = 'a', data_format = 'bbob-new2'";
     let cases: Vec<(&str, Files, &str)> = vec![
         ("ioh", vec![("a.txt", String::new())], "expected IOHprofiler_f*.json"),
+        (
+            "csv",
+            vec![(
+                "runs.csv",
+                format!("problem,optimiser,seed,evaluation,cost,budget\np,o,1,1,1,{}\n", u64::MAX),
+            )],
+            "found the budget 18446744073709551615",
+        ),
         ("ioh", ioh("\"maximization\": false -> \"maximization\": true"), "maximised"),
         ("ioh", ioh("\"function_id\": 1 -> \"function_id\": x"), "IOHprofiler_f1_Sphere.json:4: "),
         ("ioh", ioh("\"path\": \"data -> \"path\": \"../data"), "one below this file's folder"),
