@@ -1,5 +1,6 @@
 //! Solvers that need packages, and languages beside Python: `tests/external/run.sh` installs them.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -33,7 +34,8 @@ fn scripts_of_other_packages_search() {
         functions = { name = ['sphere'], dimension = [4] }\n"
         .to_owned();
     for (label, script, settings) in PACKAGES {
-        experiment += &format!(
+        let _ = write!(
+            experiment,
             "[[optimiser]]\nlabel = '{label}'\nexternal = {{ command = ['python3', '{script}'], \
              files = ['{script}', 'door.py'], settings = {{ {settings} }} }}\n"
         );
@@ -47,7 +49,7 @@ fn scripts_of_other_packages_search() {
         match &**status {
             "budget-spent" => assert_eq!(evaluations, 1500),
             status => {
-                assert!(status == "finished" && evaluations <= 1500, "{status}: {evaluations}")
+                assert!(status == "finished" && evaluations <= 1500, "{status}: {evaluations}");
             }
         }
     }
