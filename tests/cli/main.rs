@@ -8,6 +8,7 @@ mod export;
 mod folder;
 #[cfg(feature = "harness")]
 mod import;
+#[cfg(feature = "harness")]
 mod import_instances;
 #[cfg(feature = "harness")]
 mod import_mistakes;
