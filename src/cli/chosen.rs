@@ -57,8 +57,8 @@ impl Chosen {
         self.out.clone().unwrap_or_else(|| Path::new("results").join(&plan.name))
     }
 
-    /// Says which programs the experiment starts.
-    pub(super) fn tell_programs(&self, experiment: &Experiment) -> Result<(), CliError> {
+    /// Says which programs the experiment starts. Whether `--trust` has to be given again.
+    pub(super) fn tell_programs(&self, experiment: &Experiment) -> Result<bool, CliError> {
         tell_programs(experiment, self.file.as_deref(), self.trust)
     }
 }

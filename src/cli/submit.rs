@@ -62,15 +62,14 @@ impl Submit {
     pub(super) fn execute(self) -> Result<(), CliError> {
         start_worker_threads()?;
         let experiment = self.chosen.read()?;
-        // Tasks, which have nobody to ask, go by what is remembered of it.
-        self.chosen.tell_programs(&experiment)?;
+        let is_trusted = self.chosen.tell_programs(&experiment)?;
         let plan = experiment.plan()?;
         warn_of_subjects(&plan);
         warn_of_budgets(&plan);
         let folder = self.chosen.folder(&plan);
         check_folder(&folder, &plan)?;
         let shards = self.shards(&plan)?;
-        let task = self.task(&folder)?;
+        let task = self.task(&folder, is_trusted)?;
         let job = self.job(&plan.name, &absolute(&folder)?, shards, &task);
         let program = self.to.program();
         if self.go && !is_on_path(program) {
@@ -119,7 +118,7 @@ impl Submit {
     }
 
     /// The command that does one shard, all but the shard.
-    fn task(&self, folder: &Path) -> Result<String, CliError> {
+    fn task(&self, folder: &Path, is_trusted: bool) -> Result<String, CliError> {
         let program = std::env::current_exe();
         let program = program.map_err(|source| unreadable(Path::new("driftless"), source))?;
         let mut words = vec![absolute(&program)?, "run".to_owned()];
@@ -132,6 +131,8 @@ impl Submit {
             let number = number.map(|number| number.to_string());
             words.extend(number.into_iter().flat_map(|number| [option.to_owned(), number]));
         }
+        // Tasks have nobody to ask, and go by what is remembered.
+        words.extend(is_trusted.then(|| "--trust".to_owned()));
         words.extend(self.chosen.retry.then(|| "--retry".to_owned()));
         if matches!(self.to, Scheduler::Parallel) {
             check_braces(&words)?;

@@ -12,12 +12,12 @@ use crate::output::folder_of;
 use crate::process::Command;
 
 /// Says which programs an experiment starts. Those that a file of results names are started only where the user says so, by
-/// `--trust`, now or once before.
+/// `--trust`, now or once before. Whether `--trust` has to be given again.
 pub(super) fn tell_programs(
     experiment: &Experiment,
     file: Option<&Path>,
     is_trusted: bool,
-) -> Result<(), CliError> {
+) -> Result<bool, CliError> {
     // A file need not say where it comes from.
     let mut is_from_results = file.map(folder_of).is_some_and(Folder::has_runs);
     let (mut told, mut identities) = (BTreeSet::new(), BTreeSet::new());
@@ -34,7 +34,7 @@ pub(super) fn tell_programs(
     let is_known = experiment.programs().all(|(command, _)| !command.files().is_empty());
     let digest = sha256(identities.into_iter().collect::<String>().as_bytes());
     if told.is_empty() || !is_from_results || is_known && is_remembered(&digest) {
-        return Ok(());
+        return Ok(false);
     }
     if is_trusted || confirmed("Start what these results name? [y/N] ") {
         if !is_known {
@@ -42,7 +42,7 @@ pub(super) fn tell_programs(
         } else if let Err(error) = remember(&digest) {
             note!("warning: this cannot be remembered: {error}");
         }
-        return Ok(());
+        return Ok(!is_known);
     }
     Err(CliError::Usage {
         message: "these programs are named by a file of results, which may come from anybody"

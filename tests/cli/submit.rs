@@ -151,10 +151,14 @@ fn mistakes_are_told_before_anything_is_submitted() {
     }
     assert!(!folder.path().join("submitted").exists());
 
-    // Tasks have no terminal to be asked on, and go by what is remembered.
+    // Tasks have no terminal to be asked on: they go by what is remembered, or are told.
     let trusted = ["submit", "other/programs.toml", "--to", "slurm", "--shards", "2", "--trust"];
+    assert!(job(&folder, &run(&folder, &trusted)).contains(" --jobs 1 --trust --shard /2'"));
+    let named = programs.replace("['true']", "['true', 'small.toml']");
+    std::fs::write(folder.path().join("other/programs.toml"), named).unwrap();
+    std::fs::write(folder.path().join("other/small.toml"), SMALL).unwrap();
     assert!(job(&folder, &run(&folder, &trusted)).contains(" --jobs 1 --shard /2'"));
-    let task = run(&folder, &["run", "other/programs.toml", "--shard", "0/2"]);
+    let task = run(&folder, &["run", "other/programs.toml", "--out", "out", "--shard", "0/2"]);
     assert!(!stderr(&task).contains("--trust"), "{}", stderr(&task));
 }
 
