@@ -74,14 +74,14 @@ pub(crate) fn write_folder<E: From<FileError>>(
     fill: impl FnOnce(&Path) -> Result<(), E>,
 ) -> Result<(), E> {
     let error = |source| FileError { action: "write", path: path.to_owned(), source };
-    // The folder that is replaced may be the one that relative paths start from.
-    let whole = std::path::absolute(path).map_err(error)?;
     let exists = match fs::read_dir(path).map(|mut entries| entries.next().is_some()) {
         Ok(true) => return Err(error(io::ErrorKind::DirectoryNotEmpty.into()).into()),
         Ok(false) => true,
         Err(e) if e.kind() == io::ErrorKind::NotFound => false,
         Err(e) => return Err(error(e).into()),
     };
+    // A folder that is replaced may be the one that relative paths start from.
+    let whole = if exists { fs::canonicalize(path).map_err(error)? } else { path.to_owned() };
     let around = folder_of(&whole);
     create_folder(around)?;
     remove_temporary(around);

@@ -346,7 +346,8 @@ fn imported_runs_stand_beside_motions() {
     assert_eq!(runs.len(), 10);
     assert!(runs.iter().all(|row| row["instance"] == runs[0]["instance"]), "{runs:?}");
     // Exports hold costs of the search; the same cost with a motion, certified, is shown as the best.
-    let best = rows(&folder.path().join("all/tables/best.csv"));
+    ok(&folder, &["report", "back", "task", "--out", "pair"]);
+    let best = rows(&folder.path().join("pair/tables/best.csv"));
     assert_eq!(best.len(), 1);
     let duration = best[0].iter().find(|(heading, _)| heading.starts_with("t_f"));
     assert!(duration.is_some_and(|(_, value)| !value.is_empty()), "{best:?}");
