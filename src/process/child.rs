@@ -22,7 +22,8 @@ const LAST_WORDS: Duration = Duration::from_millis(200);
 pub(super) struct Child {
     process: std::process::Child,
     group: group::Group,
-    lines: Lines,
+    /// What is said; its log is complete once it has ended.
+    pub(super) lines: Lines,
     /// Reads its standard error.
     errors: Option<JoinHandle<()>>,
     /// Whether it has closed its standard output, or was ended.
@@ -77,21 +78,6 @@ impl Child {
         Ok(child)
     }
 
-    /// Says a line, which is written while this side goes on. One that nobody reads any more is lost.
-    pub(super) fn say(&self, line: String) {
-        self.lines.say(line);
-    }
-
-    /// Whether it does not read what it is told.
-    pub(super) fn is_behind(&self) -> bool {
-        self.lines.is_behind()
-    }
-
-    /// The next line, waited for until `deadline`.
-    pub(super) fn next(&self, deadline: Instant) -> Option<Line> {
-        self.lines.next(deadline)
-    }
-
     /// Ends it, with all that it has started: it may end by itself once its input has, and is killed if it does not. How it
     /// ended, where it did so by itself. Ended once, it is left alone: others may have its number.
     pub(super) fn end(&mut self) -> Option<std::process::ExitStatus> {
@@ -101,7 +87,7 @@ impl Child {
         // What it still says is read and forgotten, so that it does not wait for a reader.
         self.lines.close();
         let deadline = Instant::now() + GRACE;
-        while !matches!(self.next(deadline), None | Some(Line::End)) {}
+        while !matches!(self.lines.next(deadline), None | Some(Line::End)) {}
         let by_itself = self.has_ended(deadline);
         if !by_itself {
             self.group.terminate();
@@ -113,11 +99,6 @@ impl Child {
             wait_for(errors, LAST_WORDS);
         }
         status.filter(|_| by_itself)
-    }
-
-    /// The end of its log, in one line; complete once it has ended.
-    pub(super) fn last_words(&self) -> String {
-        self.lines.last_words()
     }
 
     /// Whether it ends until `deadline`. It stays known to the system, so that its group has its number.

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use super::child::Child;
 use super::command::{Command, Patience};
 use super::guest::Guest;
-use super::lines::Line;
+use super::lines::{Line, Lines};
 use super::request::parsed;
 use crate::search::{Failure, Stop};
 
@@ -71,12 +71,16 @@ impl Conversation {
         self.questions - 1
     }
 
+    fn lines(&self) -> &Lines {
+        match &self.peer {
+            Peer::Process(child) => &child.lines,
+            Peer::Guest(guest) => &guest.lines,
+        }
+    }
+
     /// Says a line.
     pub(super) fn say(&self, line: String) {
-        match &self.peer {
-            Peer::Process(child) => child.say(line),
-            Peer::Guest(guest) => guest.say(line),
-        }
+        self.lines().say(line);
     }
 
     /// Waits until it is ready; what it says of itself.
@@ -142,15 +146,12 @@ impl Conversation {
             }
             let look = Instant::now() + LOOK;
             let until = deadline.map_or(look, |deadline| deadline.min(look));
-            let (is_behind, next): (bool, &dyn Fn() -> Option<Line>) = match &self.peer {
-                Peer::Process(child) => (child.is_behind(), &|| child.next(until)),
-                Peer::Guest(guest) => (guest.is_behind(), &|| guest.next(until)),
-            };
+            let is_behind = self.lines().is_behind();
             let line = if is_behind {
                 std::thread::sleep(PAUSE);
                 None
             } else {
-                next()
+                self.lines().next(until)
             };
             if let Some(line) = line {
                 break line;
@@ -199,10 +200,7 @@ impl Conversation {
     }
 
     fn told(&self, what: &str) -> Failure {
-        let words = match &self.peer {
-            Peer::Process(child) => child.last_words(),
-            Peer::Guest(guest) => guest.last_words(),
-        };
+        let words = self.lines().last_words();
         let words = if words.is_empty() { words } else { format!("; its last words: {words}") };
         Failure::new(format!("{} {what}{words}", self.name))
     }

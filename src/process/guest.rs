@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use super::lines::{Line, Lines, read_lines, thread, wait_for, write_lines};
+use super::lines::{Lines, read_lines, thread, wait_for, write_lines};
 use super::socket::Socket;
 use crate::search::Failure;
 
@@ -15,7 +15,7 @@ const GRACE: Duration = Duration::from_secs(2);
 /// A client.
 #[derive(Debug)]
 pub(super) struct Guest {
-    lines: Lines,
+    pub(super) lines: Lines,
     writer: JoinHandle<()>,
     is_over: Arc<AtomicBool>,
 }
@@ -38,31 +38,11 @@ impl Guest {
         Ok(Self { lines, writer, is_over })
     }
 
-    /// Says a line, which is written while this side goes on.
-    pub(super) fn say(&self, line: String) {
-        self.lines.say(line);
-    }
-
-    /// Whether it does not read what it is told.
-    pub(super) fn is_behind(&self) -> bool {
-        self.lines.is_behind()
-    }
-
-    /// The next line, waited for until `deadline`.
-    pub(super) fn next(&self, deadline: Instant) -> Option<Line> {
-        self.lines.next(deadline)
-    }
-
     /// Says nothing more; what was said is written.
     pub(super) fn end(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
         self.lines.close();
         wait_for(&self.writer, GRACE);
-    }
-
-    /// The end of its log, in one line.
-    pub(super) fn last_words(&self) -> String {
-        self.lines.last_words()
     }
 }
 
