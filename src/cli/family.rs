@@ -1,10 +1,9 @@
 //! Options that say which family of motions is searched.
 
 use clap::Args;
-use toml::Spanned;
 
 use super::CliError;
-use crate::reorientation::{FamilyName, TrajectoryTable};
+use crate::reorientation::{FamilyChoice, FamilyName};
 
 /// Which motions are searched.
 #[derive(Debug, Args)]
@@ -22,37 +21,19 @@ pub(super) struct FamilyOptions {
 }
 
 impl FamilyOptions {
-    /// Whether the family itself is named.
-    pub(super) fn is_named(&self) -> bool {
-        self.family.is_some()
+    pub(super) fn choice(&self) -> FamilyChoice {
+        FamilyChoice {
+            family: self.family,
+            pieces: self.pieces.map(usize::from),
+            degree: self.degree.map(usize::from),
+        }
     }
 
-    /// What a file says of the family, with what the command line says instead; where neither names one, splines if
-    /// `is_spline`.
-    pub(super) fn over(
-        &self,
-        mut table: TrajectoryTable,
-        is_spline: bool,
-    ) -> Result<TrajectoryTable, CliError> {
-        if is_spline || self.pieces.is_some() || self.degree.is_some() {
-            table = table.planned();
-        }
-        if let Some(family) = self.family {
-            table = table.with_family(family);
-        }
-        if let Some(pieces) = self.pieces {
-            table = table.with_pieces(Spanned::new(0..0, pieces.into()));
-        }
-        if let Some(degree) = self.degree {
-            table = table.with_degree(Spanned::new(0..0, degree.into()));
-        }
-        let options = [("--pieces", self.pieces.is_some()), ("--degree", self.degree.is_some())];
-        match options.into_iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) if table.family() != FamilyName::Spline => Err(CliError::Usage {
-                message: format!("found {option}, which is for `--family spline` alone"),
-                help: None,
-            }),
-            _ => Ok(table),
+    /// The error of an option that is for splines alone.
+    pub(super) fn for_splines(option: &str) -> CliError {
+        CliError::Usage {
+            message: format!("found --{option}, which is for `--family spline` alone"),
+            help: None,
         }
     }
 }

@@ -46,7 +46,6 @@ mod status;
 mod submit;
 #[cfg(feature = "harness")]
 mod trust;
-mod walls;
 #[cfg(feature = "harness")]
 mod warnings;
 
@@ -63,7 +62,7 @@ use thiserror::Error;
 
 use crate::input::{Document, InputError};
 use crate::output::FileError;
-use crate::reorientation::ExportError;
+use crate::reorientation::{ExportError, PlanError};
 use crate::robot::Robot;
 use crate::search::Watch;
 
@@ -250,6 +249,18 @@ impl From<InputError> for CliError {
                     help: mistake.help,
                 }
             }
+        }
+    }
+}
+
+impl From<PlanError> for CliError {
+    fn from(error: PlanError) -> Self {
+        match error {
+            PlanError::Input(error) => error.into(),
+            PlanError::ForSplines(option) => family::FamilyOptions::for_splines(option),
+            PlanError::Search(failure) => Self::Search(failure),
+            PlanError::Interrupted => Self::Interrupted("no motion was found before".to_owned()),
+            PlanError::NoMotion => Self::NoMotion,
         }
     }
 }

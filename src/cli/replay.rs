@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::motion::{AssessmentJson, ExcursionsJson, MotionFiles, ShapeJson, Told, excursions};
+use super::motion::{MotionFiles, Told};
 use super::{CliError, read_or, shown, warn_of};
-use crate::reorientation::{Published, Reading, ReplayFile};
+use crate::reorientation::{
+    AssessmentJson, Excursions, ExcursionsJson, Published, Reading, ReplayFile, ShapeJson,
+};
 
 /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
 #[derive(Debug, Args)]
@@ -52,7 +54,8 @@ impl Replay {
         let published = ReplayFile::read(&document)?.build(&document)?;
         warn_of(&published.problem.task().robot);
         let Published { problem, coefficients, duration, .. } = &published;
-        let (task, excursions) = (problem.task(), excursions(&**problem, coefficients, *duration));
+        let excursions = Excursions::on_the_way(&**problem, coefficients, *duration);
+        let task = problem.task();
         if self.json {
             say!("{}", json(&published, ExcursionsJson::new(&excursions, task)));
         } else {

@@ -8,15 +8,14 @@ use clap::Args;
 
 use super::check::expect_task;
 use super::family::FamilyOptions;
-use super::found::Found;
+use super::found::told;
 use super::motion::MotionFiles;
-use super::plan::{search, warn_of_task};
+use super::plan::warn_of_task;
 use super::progress::Bar;
-use super::walls::Walls;
 use super::{CliError, read_or, shown, start_worker_threads, watch};
 use crate::process::{Client, Socket, TOKEN};
 use crate::reorientation::{
-    BestKnown, Formulated, Formulation, SearchedFamily, TaskFile, TaskProblem,
+    Asked, Formulated, Formulation, PlanError, Planned, Search, TaskFile, TaskProblem,
 };
 use crate::task::TaskTable;
 
@@ -53,7 +52,8 @@ impl Serve {
         let document = read_or(self.file.as_deref(), TaskFile::paper)?;
         expect_task(&document, "serve")?;
         let TaskFile { task, trajectory } = TaskFile::read(&document)?;
-        let file = TaskFile { trajectory: self.family.over(trajectory, false)?, task };
+        let trajectory = self.family.choice().over(trajectory, false);
+        let file = TaskFile { trajectory: trajectory.map_err(FamilyOptions::for_splines)?, task };
         let refused = |error| document.error_at(0..0, error, None);
         let problem = file.problem(&document)?;
         warn_of_task(problem.task());
@@ -67,10 +67,7 @@ impl Serve {
                 let formulation = formulation.unwrap_or(Formulation::TimeFree);
                 let formulated =
                     Formulated::new(formulation, Arc::new(problem), &boxes).map_err(refused)?;
-                let walls = |found: &Found<_>| {
-                    Walls::of(&found.problem, &found.coefficients, found.assessment.duration)
-                };
-                self.serve(&formulated, boxes.duration[1], &file.task, |found| Some(walls(found)))
+                self.serve(&file.task, |client, search| search.sines(client, &formulated, &boxes))
             }
             TaskProblem::Spline(problem, boxes) => {
                 let problem = Arc::new(problem);
@@ -86,7 +83,10 @@ impl Serve {
                     }
                 };
                 let formulated = formulated.map_err(refused)?;
-                self.serve(&formulated, boxes.duration[1], &file.task, |_| None)
+                let longest = boxes.duration[1];
+                self.serve(&file.task, |client, search| {
+                    search.best(client, &formulated, &formulated, longest)
+                })
             }
         }
     }
@@ -118,33 +118,33 @@ impl Serve {
     }
 
     /// Answers until the search is over, and says what it has come to: to the optimiser, and to people.
-    fn serve<F: SearchedFamily>(
+    fn serve(
         &self,
-        problem: &Formulated<F>,
-        longest: f64,
         task: &TaskTable,
-        walls: impl FnOnce(&Found<F>) -> Option<Walls>,
+        search: impl FnOnce(&Client, Search<'_>) -> Result<Planned, PlanError>,
     ) -> Result<(), CliError> {
         let client = self.client()?;
-        let mut found = {
-            let _bar = Bar::new(self.budget, watch());
-            let found = search(&client, problem, problem, longest, self.seed, self.budget);
+        let found = {
+            let watch = watch();
+            let _bar = Bar::new(self.budget, watch.clone());
+            let found =
+                search(&client, Search { seed: self.seed, budget: self.budget, watch: &watch });
             found.inspect_err(|error| match error {
-                CliError::Search(failure) => client.refuse(failure.reason()),
+                PlanError::Search(failure) => client.refuse(failure.reason()),
                 other => client.refuse(&other.to_string()),
             })?
         };
-        found.walls = walls(&found);
-        let (name, known) = (client.name(), BestKnown::of(found.problem.task()));
-        let json = {
-            let file = shown(self.file.as_ref(), "xiao2023");
-            found.json(file, &name, self.seed, task.inherited(), known, None)
-        };
-        client.tell(&json);
+        let name = client.name();
+        client.tell(&found.json(Asked {
+            task: shown(self.file.as_ref(), "xiao2023"),
+            inherited: task.inherited(),
+            optimiser: &name,
+            seed: self.seed,
+        }));
         let file = shown(self.file.as_ref(), "the paper's task");
         note!("{file} by {name}, seed {}", self.seed);
-        note!("{}", found.told(known, None));
-        self.files.write(found.problem.task(), &found.coefficients, found.assessment.duration)?;
+        note!("{}", told(&found));
+        self.files.write(&*found.problem, &found.coefficients, found.assessment.duration)?;
         if found.interrupted {
             return Err(CliError::Interrupted("this is the best motion so far".to_owned()));
         }

@@ -151,6 +151,9 @@ pub trait AnyReorientation: Debug + Send + Sync {
     /// The motion, sampled; see [`Motion::sample`].
     fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion;
 
+    /// Whether motions beside this one end nearer to the goal; see [`Reorientation::is_held_by_time`].
+    fn is_held_by_time(&self, coefficients: &[f64]) -> bool;
+
     /// The paper's powers of time of a motion; see [`SearchedFamily::powers`].
     fn powers(&self, coefficients: &[f64], duration: f64) -> Option<Vec<Vec<f64>>>;
 
@@ -188,6 +191,10 @@ impl<F: SearchedFamily> AnyReorientation for Reorientation<F> {
 
     fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion {
         Motion::sample(self, coefficients, duration, intervals)
+    }
+
+    fn is_held_by_time(&self, coefficients: &[f64]) -> bool {
+        self.is_held_by_time(coefficients)
     }
 
     fn powers(&self, coefficients: &[f64], duration: f64) -> Option<Vec<Vec<f64>>> {

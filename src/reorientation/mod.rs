@@ -17,12 +17,14 @@ mod fitness;
 mod formulation;
 #[cfg(feature = "harness")]
 mod interface;
+mod json;
 #[cfg(feature = "harness")]
 mod keys;
 #[cfg(feature = "harness")]
 mod kind;
 mod measure;
 mod motion;
+mod planner;
 #[cfg(feature = "harness")]
 mod poses;
 mod published;
@@ -51,10 +53,15 @@ pub use export::{ExportError, INTERVALS, MotionFormat, write_motion};
 pub use family::{FamilyName, FamilySpec};
 pub use fitness::{Assessment, Reorientation};
 pub use formulation::{Formulated, Formulation};
+pub use json::{AssessmentJson, ExcursionsJson, ShapeJson};
 #[cfg(feature = "harness")]
 pub use kind::ReorientationTask;
 pub use measure::Workspace;
 pub use motion::{JointMotion, Motion};
+pub use planner::{
+    Asked, FamilyChoice, OtherFamily, PlanError, Planned, PlannedJson, Planner, Remark, Search,
+    Spent, Walls,
+};
 pub use published::{Published, Reading, ReplayFile};
 pub use reach::{Block, Reach};
 pub use settings::{TaskFile, TaskProblem, TrajectoryTable};

@@ -1,13 +1,10 @@
 //! Which variables of a motion lie on the walls of its search box, and what to write to move them.
 
-use crate::reorientation::{Formulated, Formulation};
+use crate::reorientation::formulation::{Formulated, Formulation};
 use crate::search::Problem as _;
 
 /// A variable nearer to a wall than this share of its box is on it.
 const ON: f64 = 1e-4;
-
-/// So many are named to people; JSON has all.
-const NAMED: usize = 4;
 
 /// A variable of the box, one with a duration last and joints counted from one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,8 +23,8 @@ enum Variable {
 }
 
 /// The variables on the walls.
-#[derive(Debug)]
-pub(super) struct Walls {
+#[derive(Debug, Clone)]
+pub struct Walls {
     on: Vec<Variable>,
     /// The keys of `[trajectory.box]` that would double the box there.
     wider: Vec<String>,
@@ -35,7 +32,7 @@ pub(super) struct Walls {
 
 impl Walls {
     /// Those of a motion that was found in the problem's box.
-    pub(super) fn of(problem: &Formulated, coefficients: &[f64], duration: f64) -> Self {
+    pub fn of(problem: &Formulated, coefficients: &[f64], duration: f64) -> Self {
         let family = problem.task().family();
         let (joints, terms) = (family.joints(), family.terms());
         let variable = |i: usize| match problem.formulation() {
@@ -77,7 +74,7 @@ impl Walls {
     }
 
     /// Their names.
-    pub(super) fn names(&self) -> Vec<String> {
+    pub fn names(&self) -> Vec<String> {
         let name = |variable: &Variable| match variable {
             Variable::Bump { joint, bump } => format!("joint {joint}, bump {bump}"),
             Variable::Alpha { joint, power } => format!("joint {joint}, α_{power}"),
@@ -86,25 +83,9 @@ impl Walls {
         self.on.iter().map(name).collect()
     }
 
-    /// What to say of them, where there are any: a warning of a motion that ends so far from its goal \[°\], a note of one that reaches it.
-    pub(super) fn told(&self, missed_by: Option<f64>) -> Option<String> {
-        if self.on.is_empty() {
-            return None;
-        }
-        let names = self.names();
-        let mut on_walls = names[..names.len().min(NAMED)].join("; ");
-        if names.len() > NAMED {
-            on_walls = format!("{on_walls} and {} more", names.len() - NAMED);
-        }
-        let on_walls = format!("on walls of the search box: {on_walls}");
-        let write = format!("write `{}` in `[trajectory.box]`", self.wider.join("` and `"));
-        Some(match missed_by {
-            Some(degrees) => format!(
-                "warning: the base ends {degrees:.3}° from its goal, {on_walls}; a wider box may hold a motion that reaches it: \
-                 {write}, or try `--family spline`"
-            ),
-            None => format!("note: {on_walls}; a wider box may hold a better motion: {write}"),
-        })
+    /// The keys of `[trajectory.box]` that would double the box there; empty where the motion is on no wall.
+    pub fn wider(&self) -> &[String] {
+        &self.wider
     }
 }
 
@@ -135,26 +116,18 @@ mod tests {
     #[test]
     fn names_walls_and_the_box_that_would_move_them() {
         let inside = walls(Formulation::TimeFree, |_| {});
-        assert_eq!((inside.names(), inside.told(Some(3.0))), (vec![], None));
+        assert!(inside.names().is_empty() && inside.wider().is_empty(), "{inside:?}");
 
         let on = walls(Formulation::TimeFree, |x| (x[0], x[5]) = (1.0, -0.35));
         assert_eq!(on.names(), ["joint 1, bump 1", "joint 3, bump 2"]);
-        let write = "write `coefficient = [2.0, 0.7]` in `[trajectory.box]`";
-        let [reached, missed] = [None, Some(3.0)].map(|missed_by| on.told(missed_by).unwrap());
-        assert!(reached.starts_with("note: ") && reached.ends_with(write), "{reached}");
-        assert!(missed.starts_with("warning: the base ends 3.000° "), "{missed}");
-        assert!(missed.contains(write), "{missed}");
-
-        let many = walls(Formulation::TimeFree, |x| x[..12].fill(-0.35)).told(None).unwrap();
-        assert!(many.contains("joint 4, bump 2 and 2 more; a wider box"), "{many}");
+        assert_eq!(on.wider(), ["coefficient = [2.0, 0.7]"]);
 
         let second = walls(Formulation::Scaled, |x| (x[3], x[12]) = (0.35, 12.0));
         assert_eq!(second.names(), ["joint 2, bump 2", "duration"]);
-        let write = "write `coefficient = [1.0, 0.7]` and `duration = [4.0, 24.0]` in";
-        assert!(second.told(None).unwrap().contains(write), "{:?}", second.told(None));
+        assert_eq!(second.wider(), ["coefficient = [1.0, 0.7]", "duration = [4.0, 24.0]"]);
 
         let raw = walls(Formulation::Raw, |x| x[12] = 4.0);
         assert_eq!(raw.names(), ["duration"]);
-        assert!(raw.told(None).unwrap().contains("`duration = [2.0, 12.0]`"));
+        assert_eq!(raw.wider(), ["duration = [2.0, 12.0]"]);
     }
 }

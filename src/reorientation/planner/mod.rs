@@ -1,0 +1,296 @@
+//! Plans the motion of one task: what is searched, from how many starts, and once more where the goal was missed.
+
+mod planned;
+mod remark;
+mod walls;
+
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::time::Instant;
+
+pub use planned::{Asked, OtherFamily, Planned, PlannedJson, Spent};
+pub use remark::Remark;
+use toml::Spanned;
+pub use walls::Walls;
+
+use super::any::SearchedFamily;
+use super::boxes::Boxes;
+use super::family::FamilyName;
+use super::fitness::Reorientation;
+use super::formulation::{Formulated, Formulation};
+use super::reach::Reach;
+use super::settings::{TaskFile, TaskProblem, TrajectoryTable};
+use super::spline_box::SplineBox;
+use crate::input::{Document, InputError};
+use crate::optimiser::{Optimiser, Scp, Settings};
+use crate::search::{Failure, Oracle, Rng, Stop, Watch};
+use crate::task::Task;
+use crate::trajectory::Spline;
+
+/// Starts that `scp` follows over splines.
+const SPLINE_STARTS: usize = 20;
+
+/// Share of J that `scp` is content to miss there.
+const SPLINE_TOLERANCE: f64 = 1e-6;
+
+/// How often more starts are followed where no motion reaches the goal, and by how much less time weighs each time.
+const MORE_ROUNDS: u64 = 2;
+const LESS_TIME: f64 = 100.0;
+
+/// Starts among the paper's family, to compare.
+const OTHER_STARTS: usize = 12;
+
+/// Which motions are searched, instead of those that a file says.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FamilyChoice {
+    /// The family.
+    pub family: Option<FamilyName>,
+    /// Pieces of a spline.
+    pub pieces: Option<usize>,
+    /// Degree of a spline.
+    pub degree: Option<usize>,
+}
+
+impl FamilyChoice {
+    /// What a file says of the family, with what is chosen instead; where neither names one, splines if `is_spline`. An error names
+    /// the choice that is for splines alone.
+    pub fn over(
+        &self,
+        mut table: TrajectoryTable,
+        is_spline: bool,
+    ) -> Result<TrajectoryTable, &'static str> {
+        if is_spline || self.pieces.is_some() || self.degree.is_some() {
+            table = table.planned();
+        }
+        if let Some(family) = self.family {
+            table = table.with_family(family);
+        }
+        if let Some(pieces) = self.pieces {
+            table = table.with_pieces(Spanned::new(0..0, pieces));
+        }
+        if let Some(degree) = self.degree {
+            table = table.with_degree(Spanned::new(0..0, degree));
+        }
+        let choices = [("pieces", self.pieces.is_some()), ("degree", self.degree.is_some())];
+        match choices.into_iter().find(|(_, is_given)| *is_given) {
+            Some((choice, _)) if table.family() != FamilyName::Spline => Err(choice),
+            _ => Ok(table),
+        }
+    }
+}
+
+/// Why there is no plan.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// The file cannot be used.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A choice that is for splines alone.
+    #[error("found `{0}`, which is for splines alone")]
+    ForSplines(&'static str),
+    /// The search could not begin or go on.
+    #[error("the search failed: {0}")]
+    Search(#[from] Failure),
+    /// The user ended the search before it had found anything.
+    #[error("interrupted: no motion was found before")]
+    Interrupted,
+    /// Nothing came of it.
+    #[error("no motion found: no evaluation gave a finite cost")]
+    NoMotion,
+}
+
+/// A task to plan, and the optimiser that does it.
+#[derive(Debug, Clone)]
+pub struct Planner {
+    document: Document,
+    file: TaskFile,
+    problem: TaskProblem,
+    /// The task over the paper's family, where nobody asked for a family.
+    other: Option<TaskProblem>,
+    optimiser: Settings,
+}
+
+impl Planner {
+    /// Reads a task. `scp` searches splines unless file or choice say otherwise; others get nowhere among hundreds of variables.
+    pub fn read(
+        document: &Document,
+        choice: FamilyChoice,
+        optimiser: Settings,
+    ) -> Result<Self, PlanError> {
+        let TaskFile { task, trajectory } = TaskFile::read(document)?;
+        let is_named = choice.family.is_some() || trajectory.states_family();
+        let is_spline = matches!(optimiser, Settings::Scp(_));
+        let trajectory = choice.over(trajectory, is_spline).map_err(PlanError::ForSplines)?;
+        let file = TaskFile { task, trajectory };
+        let problem = file.problem(document)?;
+        let other = match &problem {
+            TaskProblem::Spline(problem, _) if !is_named => {
+                let table = file.trajectory.clone().with_family(FamilyName::SinePolynomial);
+                Some(table.build(problem.task().clone(), document)?)
+            }
+            _ => None,
+        };
+        Ok(Self { document: document.clone(), file, problem, other, optimiser })
+    }
+
+    /// The task.
+    pub fn task(&self) -> &Arc<Task> {
+        self.problem.task()
+    }
+
+    /// The file, with the family that is searched.
+    pub fn file(&self) -> &TaskFile {
+        &self.file
+    }
+
+    /// Searches, by at most `budget` evaluations.
+    pub fn plan(&self, seed: u64, budget: u64, watch: &Watch) -> Result<Planned, PlanError> {
+        let search = Search { seed, budget, watch };
+        match &self.problem {
+            TaskProblem::SinePolynomial(problem, boxes) => {
+                // Default settings name no formulation.
+                let formulation = Formulation::named(self.optimiser.formulation());
+                let formulation = formulation.unwrap_or(Formulation::TimeFree);
+                let problem = Arc::new(problem.clone());
+                let formulated = Formulated::new(formulation, problem, boxes);
+                let formulated = formulated.map_err(|error| self.refused(&error))?;
+                search.sines(self.optimiser.optimiser(), &formulated, boxes)
+            }
+            TaskProblem::Spline(problem, boxes) => {
+                let (found, other) = rayon::join(
+                    || self.search_splines(problem, boxes, search),
+                    || self.other.as_ref().and_then(|other| search.other_family(other)),
+                );
+                let found = found?;
+                let other = other.filter(|_| !found.interrupted);
+                Ok(Planned { other, ..found })
+            }
+        }
+    }
+
+    /// Searches splines; where none reaches the goal and one may, again from other starts and with the goal weighing more.
+    fn search_splines(
+        &self,
+        problem: &Reorientation<Spline>,
+        boxes: &SplineBox,
+        search: Search<'_>,
+    ) -> Result<Planned, PlanError> {
+        let settings = match &self.optimiser {
+            Settings::Scp(scp) => Settings::Scp(Scp {
+                starts: NonZeroUsize::new(SPLINE_STARTS),
+                tolerance: SPLINE_TOLERANCE,
+                ..scp.clone()
+            }),
+            other => other.clone(),
+        };
+        let free_form = |task: Reorientation<Spline>| {
+            Formulated::free_form(Arc::new(task)).map_err(|error| self.refused(&error))
+        };
+        let (optimiser, longest) = (settings.optimiser(), boxes.duration[1]);
+        let own = free_form(problem.clone())?;
+        let mut found = search.best(optimiser, &own, &own, longest)?;
+        // The longer motions are, the less their time may weigh if the goal is to count.
+        let own_weight = 1.0 - problem.task().base_weight;
+        let mut time_weight = own_weight.min(1.0 / found.assessment.duration);
+        for round in 1..=MORE_ROUNDS {
+            let left = search.budget - found.spent.evaluations;
+            if found.reach != Reach::NotFound || found.interrupted || left == 0 {
+                break;
+            }
+            time_weight /= LESS_TIME;
+            let task = Task { base_weight: 1.0 - time_weight, ..(**problem.task()).clone() };
+            let (family, accuracy) = (problem.family().clone(), problem.accuracy());
+            let demanding = free_form(Reorientation::over(Arc::new(task), family, accuracy))?;
+            let seed = search.seed.wrapping_add(round);
+            let more = Search { seed, budget: left, ..search };
+            found = found.or(more.best(optimiser, &demanding, &own, longest)?);
+        }
+        Ok(found)
+    }
+
+    fn refused(&self, error: &dyn std::error::Error) -> InputError {
+        self.document.error_at(0..0, error, None)
+    }
+}
+
+/// One search for the best motion.
+#[derive(Debug, Clone, Copy)]
+pub struct Search<'a> {
+    /// The seed of the random numbers.
+    pub seed: u64,
+    /// Evaluations to spend at most.
+    pub budget: u64,
+    /// Who watches.
+    pub watch: &'a Watch,
+}
+
+impl Search<'_> {
+    /// Has an optimiser search once; `problem`, of which `searched` may be one with other weights, judges what it finds, and motions
+    /// of up to `longest` \[s\] are those that were searched.
+    pub fn best<F: SearchedFamily>(
+        self,
+        optimiser: &dyn Optimiser,
+        searched: &Formulated<F>,
+        problem: &Formulated<F>,
+        longest: f64,
+    ) -> Result<Planned, PlanError> {
+        let mut oracle = Oracle::new(searched, self.budget, self.watch).parallel();
+        let started = Instant::now();
+        let stop = optimiser.minimise(&mut oracle, &mut Rng::new(self.seed));
+        let seconds = started.elapsed().as_secs_f64();
+        let interrupted = stop == Err(Stop::Interrupted);
+        let failure = if let Err(Stop::Failed(failure)) = stop { Some(failure) } else { None };
+        let Some(best) = oracle.best().cloned() else {
+            return Err(match failure {
+                Some(failure) => failure.into(),
+                None if interrupted => PlanError::Interrupted,
+                None if oracle.evaluations() == 0 => Failure::new("no cost was asked for").into(),
+                None => PlanError::NoMotion,
+            });
+        };
+        let (coefficients, assessment) = problem.certify(&best.x);
+        if !assessment.cost.is_finite() || !assessment.duration.is_finite() {
+            return Err(PlanError::NoMotion);
+        }
+        Ok(Planned {
+            reach: Reach::of(problem.task().task(), &assessment, longest),
+            spent: Spent::by(&oracle, seconds),
+            problem: Arc::new(problem.task().clone()),
+            coefficients,
+            assessment,
+            walls: None,
+            interrupted,
+            failure,
+            other: None,
+        })
+    }
+
+    /// The same among sine polynomials, whose box is a choice.
+    pub fn sines(
+        self,
+        optimiser: &dyn Optimiser,
+        problem: &Formulated,
+        boxes: &Boxes,
+    ) -> Result<Planned, PlanError> {
+        let found = self.best(optimiser, problem, problem, boxes.duration[1])?;
+        let walls = Walls::of(problem, &found.coefficients, found.assessment.duration);
+        Ok(Planned { walls: Some(walls), ..found })
+    }
+
+    /// What the paper's family comes to, if it comes to anything.
+    fn other_family(self, problem: &TaskProblem) -> Option<OtherFamily> {
+        let TaskProblem::SinePolynomial(problem, boxes) = problem else { return None };
+        let terms = problem.family().terms();
+        let formulated =
+            Formulated::new(Formulation::TimeFree, Arc::new(problem.clone()), boxes).ok()?;
+        let scp = Scp { starts: NonZeroUsize::new(OTHER_STARTS), ..Scp::default() };
+        let found = self.best(&scp, &formulated, &formulated, boxes.duration[1]).ok()?;
+        (!found.interrupted).then(|| OtherFamily {
+            terms,
+            t_f: found.assessment.duration,
+            residual_deg: found.assessment.residual().to_degrees(),
+            status: found.reach,
+        })
+    }
+}
