@@ -50,6 +50,7 @@ mod trust;
 mod warnings;
 
 use std::error::Error as _;
+use std::ffi::OsString;
 use std::fmt::{self, Write as _};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -279,22 +280,26 @@ impl From<toml::ser::Error> for CliError {
 }
 
 impl CliError {
-    fn exit_code(&self) -> ExitCode {
+    fn exit_status(&self) -> u8 {
         match self {
-            Self::Unreadable { .. } | Self::Input { .. } | Self::Usage { .. } => ExitCode::from(2),
+            Self::Unreadable { .. } | Self::Input { .. } | Self::Usage { .. } => 2,
             #[cfg(feature = "harness")]
-            Self::Shard { .. } | Self::Import(crate::import::ImportError::Content { .. }) => {
-                ExitCode::from(2)
-            }
-            Self::Required(_) => ExitCode::from(3),
-            _ => ExitCode::from(1),
+            Self::Shard { .. } | Self::Import(crate::import::ImportError::Content { .. }) => 2,
+            Self::Required(_) => 3,
+            _ => 1,
         }
     }
 }
 
-/// Parses the arguments and does what they ask: exit status 0 done, 1 failed, 2 bad usage or input, 3 not as required.
+/// Does what the arguments of the process ask; see [`main_with`].
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    main_with(std::env::args_os()).into()
+}
+
+/// Parses arguments, the first of which is the program's name, and does what they ask: exit status 0 done, 1 failed, 2 bad usage or
+/// input, 3 not as required. Help and bad usage end the process.
+pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let cli = Cli::parse_from(arguments);
     let hook = |_: &_| -> Box<dyn miette::ReportHandler> {
         Box::new(MietteHandlerOpts::new().terminal_links(false).context_lines(1).build())
     };
@@ -323,12 +328,12 @@ pub fn main() -> ExitCode {
         Verb::Check(check) => check.execute(),
     };
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(error) => {
-            let code = error.exit_code();
+            let status = error.exit_status();
             // Where that cannot be written, what it would have said is of no use to anybody.
             let _ = writeln!(io::stderr(), "{}", shown_error(error));
-            code
+            status
         }
     }
 }

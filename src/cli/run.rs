@@ -1,8 +1,7 @@
 //! `driftless run`.
 
-use std::collections::HashSet;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
@@ -13,8 +12,7 @@ use super::results::start_all_threads;
 use super::warnings::warn_of_subjects;
 use super::{CliError, watch};
 use crate::experiment::{
-    Damage, Folder, Options, Plan, Progress, Record, RunError, RunSpec, Shard, ShardChoice, Store,
-    standing,
+    Again, Damage, Folder, Options, Plan, Progress, Record, RunSpec, Shard, ShardChoice,
 };
 use crate::report::Target;
 
@@ -92,7 +90,7 @@ impl Run {
         let plan = experiment.plan()?;
         warn_of_subjects(&plan);
         let path = self.chosen.folder(&plan);
-        check_possible(&plan, &path)?;
+        plan.check_possible(&path)?;
         let folder = Folder::create(&path, plan)?;
         if let Some(earlier) = &folder.earlier {
             note!(
@@ -133,23 +131,16 @@ impl Run {
     /// Does what is missing; how many runs that were.
     fn run_missing(&self, folder: &Folder, shard: Option<Shard>) -> Result<usize, CliError> {
         let (watch, mine, store) = (watch(), folder.runs(shard), &folder.store);
-        if self.fresh || self.chosen.retry {
-            let mut again: HashSet<&str> = mine.iter().map(|run| run.key.as_str()).collect();
-            if !self.fresh {
-                let failures = standing(&folder.plan, store)?.failures;
-                let failed = failures.iter().map(|run| folder.plan.runs[run.run].key.as_str());
-                let failed: HashSet<&str> = failed.collect();
-                again.retain(|key| failed.contains(key));
-            }
-            // What cannot be done again is kept.
-            for run in mine.iter().filter(|run| folder.plan.obstacle(run).is_some()) {
-                again.remove(run.key.as_str());
-            }
-            store.remove(&again, &|| note!("{WAITING}"))?;
+        let again = match (self.fresh, self.chosen.retry) {
+            (true, _) => Some(Again::All),
+            (false, true) => Some(Again::Failed),
+            (false, false) => None,
+        };
+        if let Some(again) = again {
+            folder.forget(&mine, again, &|| note!("{WAITING}"))?;
         }
-        let stored = store.keys()?;
-        let missing = mine.iter().filter(|run| !stored.contains(&run.key));
-        let (count, evaluations) = missing.fold((0, 0), |(n, sum), run| (n + 1, sum + run.budget));
+        let missing = folder.missing(shard)?;
+        let (count, evaluations) = (missing.len(), missing.iter().map(|run| run.budget).sum());
         if count < mine.len() {
             note!("{} of {} runs are stored already", mine.len() - count, mine.len());
         }
@@ -161,8 +152,7 @@ impl Run {
             folder.run(Options { jobs, shard }, &watch, &lines)?;
         }
         if watch.is_interrupted() {
-            let stored = store.keys()?;
-            let stored = mine.iter().filter(|run| stored.contains(&run.key)).count();
+            let stored = mine.len() - folder.missing(shard)?.len();
             let without = match (self.fresh, self.chosen.retry) {
                 (true, _) => " without --fresh",
                 (false, true) => " without --retry",
@@ -175,20 +165,6 @@ impl Run {
             )));
         }
         Ok(count)
-    }
-}
-
-/// Whether this program can do any of what is missing, before anything is written.
-fn check_possible(plan: &Plan, path: &Path) -> Result<(), CliError> {
-    if plan.runs.iter().all(|run| plan.obstacle(run).is_none()) {
-        return Ok(());
-    }
-    let stored = Store::existing(path).keys()?;
-    let missing = plan.runs.iter().filter(|run| !stored.contains(&run.key));
-    let obstacles: Option<Vec<_>> = missing.map(|run| plan.obstacle(run)).collect();
-    match obstacles.as_deref() {
-        Some([reason, ..]) => Err(RunError::foreign(reason).into()),
-        _ => Ok(()),
     }
 }
 

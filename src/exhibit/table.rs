@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use polars::prelude::{Column, DataFrame};
+use polars::prelude::{Column, DataFrame, ParquetWriter};
 
 /// A table of a report.
 #[derive(Debug, Clone)]
@@ -53,6 +53,23 @@ impl Table {
     #[must_use]
     pub fn with_numbers(self, name: &str, values: &[f64]) -> Self {
         self.with(Column::new(name.into(), values))
+    }
+
+    /// Name of its files.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it shows.
+    pub fn caption(&self) -> &str {
+        &self.caption
+    }
+
+    /// As a Parquet file; an error says why it could not be made.
+    pub fn parquet(&self) -> Result<Vec<u8>, String> {
+        let (mut bytes, mut frame) = (Vec::new(), self.frame.clone());
+        let written = ParquetWriter::new(&mut bytes).finish(&mut frame);
+        written.map(|_| bytes).map_err(|error| error.to_string())
     }
 
     fn with(mut self, column: Column) -> Self {

@@ -229,6 +229,19 @@ impl Experiment {
         self
     }
 
+    /// The same experiment with the optimisers of another one, too.
+    #[must_use]
+    pub fn with_optimisers_of(mut self, other: &Self) -> Self {
+        self.field.extend(other.field.iter().cloned());
+        self
+    }
+
+    /// The same experiment without its optimisers.
+    #[must_use]
+    pub fn without_optimisers(self) -> Self {
+        Self { field: Vec::new(), ..self }
+    }
+
     /// The same experiment with the targets that instances have, wherever they came from.
     #[must_use]
     pub(super) fn with_targets(self, instances: &[Instance]) -> Self {

@@ -1,5 +1,6 @@
 //! A folder of results: an experiment with its stored runs.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -11,6 +12,7 @@ use super::plan::Plan;
 use super::runner::{Progress, RunError, run};
 use super::shard::Shard;
 use super::specs::RunSpec;
+use super::standing::standing;
 use super::store::{Store, StoreError};
 use crate::digest::digest;
 use crate::input::{Document, InputError};
@@ -58,6 +60,15 @@ impl Options {
     pub fn with_shard(self, shard: Shard) -> Self {
         Self { shard: Some(shard), ..self }
     }
+}
+
+/// Which stored runs are done again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Again {
+    /// Those that failed.
+    Failed,
+    /// All.
+    All,
 }
 
 /// A folder that cannot be used.
@@ -185,6 +196,34 @@ impl Folder {
         places.filter(|(place, _)| mine(*place)).map(|(_, run)| run).collect()
     }
 
+    /// Those runs of a shard, or of all, that are not stored.
+    pub fn missing(&self, shard: Option<Shard>) -> Result<Vec<&RunSpec>, StoreError> {
+        let stored = self.store.keys()?;
+        let mine = self.runs(shard).into_iter();
+        Ok(mine.filter(|run| !stored.contains(&run.key)).collect())
+    }
+
+    /// Removes those of `runs` from the store that are to be done again; `waiting` is told where another process is waited for. What
+    /// cannot be done again is kept.
+    pub fn forget(
+        &self,
+        runs: &[&RunSpec],
+        again: Again,
+        waiting: &dyn Fn(),
+    ) -> Result<(), StoreError> {
+        let mut keys: HashSet<&str> = runs.iter().map(|run| run.key.as_str()).collect();
+        if again == Again::Failed {
+            let failures = standing(&self.plan, &self.store)?.failures;
+            let failed = failures.iter().map(|run| self.plan.runs[run.run].key.as_str());
+            let failed: HashSet<&str> = failed.collect();
+            keys.retain(|key| failed.contains(key));
+        }
+        for run in runs.iter().filter(|run| self.plan.obstacle(run).is_some()) {
+            keys.remove(run.key.as_str());
+        }
+        self.store.remove(&keys, waiting)
+    }
+
     /// Does what is missing; what is stored is not done again. Where `watch` is interrupted, runs that have not
     /// ended leave nothing behind.
     pub fn run(
@@ -196,6 +235,22 @@ impl Folder {
         let all = || std::thread::available_parallelism().map_or(1, usize::from);
         let jobs = options.jobs.unwrap_or_else(all).max(1);
         run(&self.plan, &self.runs(options.shard), &self.store, jobs, watch, progress)
+    }
+}
+
+impl Plan {
+    /// Whether this program can do any of what is missing from a folder, before anything is written.
+    pub fn check_possible(&self, folder: &Path) -> Result<(), RunError> {
+        if self.runs.iter().all(|run| self.obstacle(run).is_none()) {
+            return Ok(());
+        }
+        let stored = Store::existing(folder).keys()?;
+        let missing = self.runs.iter().filter(|run| !stored.contains(&run.key));
+        let obstacles: Option<Vec<_>> = missing.map(|run| self.obstacle(run)).collect();
+        match obstacles.as_deref() {
+            Some([reason, ..]) => Err(RunError::foreign(reason)),
+            _ => Ok(()),
+        }
     }
 }
 

@@ -37,7 +37,7 @@ pub use balance::Sensible;
 pub use entrant::Entrant;
 pub use estimate::{Estimate, estimate};
 pub use file::Experiment;
-pub use folder::{Folder, FolderError, Options};
+pub use folder::{Again, Folder, FolderError, Options};
 pub use foreign::{Foreign, ForeignOptimiser, ForeignProblem, ForeignRun, ForeignStep};
 pub use identity::Identity;
 pub use import_table::DataFormat;

@@ -66,13 +66,16 @@ impl Mistake {
 
     /// File, and line and column where they are known, with colons behind them.
     fn place(&self) -> String {
-        let before = self.text.get(..self.span.start).filter(|_| !self.span.is_empty());
-        let place = before.map_or_else(String::new, |before| {
-            let line = before.matches('\n').count() + 1;
-            let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
-            format!("{line}:{column}: ")
-        });
+        let place = self.line_and_column();
+        let place = place.map_or_else(String::new, |(line, column)| format!("{line}:{column}: "));
         format!("{}: {place}", self.path.display())
+    }
+
+    /// Where the mistake begins, counted from one, where that is known.
+    pub fn line_and_column(&self) -> Option<(usize, usize)> {
+        let before = self.text.get(..self.span.start).filter(|_| !self.span.is_empty())?;
+        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+        Some((before.matches('\n').count() + 1, column))
     }
 
     /// Place and message with what stands there, where the lines around are too long to be shown whole.
@@ -113,6 +116,11 @@ impl Document {
     /// A text that is part of the program.
     pub fn embedded(name: &str, text: &str) -> Self {
         Self { path: name.into(), text: text.to_owned() }
+    }
+
+    /// The text.
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// Where a key stands at the top level, if it does.

@@ -6,11 +6,8 @@ use serde_json::Value;
 use super::answer::{self, Answer, Opening};
 use super::conversation::Conversation;
 use super::numbers::Coordinates;
-use super::request::{Request, plural};
-use crate::search::{Bounds, Evaluation, Oracle, Points, Rng, Stop};
-
-/// How far beyond a bound a coordinate is taken for the bound, as a share of the variable's range: rounding.
-const ROUNDING: f64 = 1e-12;
+use super::request::Request;
+use crate::search::{Bounds, Oracle, Rng, Stop};
 
 /// What a solver says of itself; nothing need be said.
 #[derive(Debug, Deserialize)]
@@ -48,10 +45,7 @@ impl<'a> Session<'a> {
     pub(super) fn run(&mut self, oracle: &mut Oracle<'_>) -> Result<(), Stop> {
         let outcome = self.answer(oracle);
         oracle.stop_clock();
-        if self.outside > 0 {
-            let points = plural(self.outside, "point");
-            oracle.remark(format!("{points} outside the box cost infinitely much"));
-        }
+        oracle.remark_outside(self.outside);
         outcome
     }
 
@@ -105,46 +99,13 @@ impl<'a> Session<'a> {
         let points = x.points(oracle.bounds().len());
         let points = points.map_err(|failure| self.peer.failure(failure.reason()))?;
         let mut found = Vec::new();
-        let outcome = self.evaluate(oracle, points, &mut found);
+        let (outside, outcome) = oracle.evaluate_anywhere(points, &mut found);
+        self.outside += outside;
         if !found.is_empty() {
             let answer = Answer::costs(id, &found, x.is_single, oracle.remaining());
             self.peer.say(answer::line(&answer));
         }
         outcome
-    }
-
-    /// Evaluates points in their order.
-    fn evaluate(
-        &mut self,
-        oracle: &mut Oracle<'_>,
-        mut points: Points,
-        found: &mut Vec<Evaluation>,
-    ) -> Result<(), Stop> {
-        let bounds = oracle.bounds();
-        let is_inside: Vec<bool> =
-            (0..points.len()).map(|i| put_into(bounds, &mut points[i])).collect();
-        let mut place = 0;
-        for inside in is_inside.chunk_by(|a, b| a == b) {
-            if inside[0] {
-                let mut part = Points::zeros(points.dimension(), inside.len());
-                (0..inside.len()).for_each(|i| part[i].copy_from_slice(&points[place + i]));
-                let before = oracle.evaluations();
-                let mut answers = vec![Evaluation::default(); inside.len()];
-                let outcome = oracle.evaluate_batch(&part, &mut answers);
-                let made = (oracle.evaluations() - before) as usize;
-                let is_answered = matches!(outcome, Ok(()) | Err(Stop::BudgetSpent));
-                found.extend(answers.into_iter().take(if is_answered { made } else { 0 }));
-                outcome?;
-            } else {
-                for _ in inside {
-                    oracle.refuse()?;
-                    self.outside += 1;
-                    found.push(Evaluation::new(f64::INFINITY, f64::INFINITY));
-                }
-            }
-            place += inside.len();
-        }
-        Ok(())
     }
 
     /// The only point of a request for derivatives, which there are within the box alone.
@@ -156,7 +117,7 @@ impl<'a> Session<'a> {
             }
             Ok(x) => {
                 let mut x = x.to_vec();
-                if put_into(bounds, &mut x) {
+                if bounds.snap(&mut x) {
                     return Ok(x);
                 }
                 "asked for derivatives outside the box".to_owned()
@@ -164,15 +125,4 @@ impl<'a> Session<'a> {
         };
         Err(self.peer.failure(&wrong).into())
     }
-}
-
-/// Puts a point that is outside the box by rounding onto its walls; whether it is inside then.
-fn put_into(bounds: &Bounds, x: &mut [f64]) -> bool {
-    for (value, [lower, upper]) in x.iter_mut().zip(bounds.iter()) {
-        let room = ROUNDING * (upper - lower);
-        if *value >= lower - room && *value <= upper + room {
-            *value = value.clamp(lower, upper);
-        }
-    }
-    bounds.contains(x)
 }

@@ -157,6 +157,9 @@ pub trait AnyReorientation: Debug + Send + Sync {
     /// The paper's powers of time of a motion; see [`SearchedFamily::powers`].
     fn powers(&self, coefficients: &[f64], duration: f64) -> Option<Vec<Vec<f64>>>;
 
+    /// The same as a value of its own.
+    fn shared(&self) -> Arc<dyn AnyReorientation>;
+
     /// Coefficients in rows, one per joint.
     fn rows(&self, coefficients: &[f64]) -> Vec<Vec<f64>> {
         let own = coefficients.len() / self.task().robot.joint_count();
@@ -191,6 +194,10 @@ impl<F: SearchedFamily> AnyReorientation for Reorientation<F> {
 
     fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion {
         Motion::sample(self, coefficients, duration, intervals)
+    }
+
+    fn shared(&self) -> Arc<dyn AnyReorientation> {
+        Arc::new(self.clone())
     }
 
     fn is_held_by_time(&self, coefficients: &[f64]) -> bool {

@@ -45,6 +45,8 @@ pub use any::{AnyReorientation, SearchedFamily};
 pub use best_known::{BestKnown, fingerprint};
 pub use boxes::Boxes;
 pub use excursions::Excursions;
+#[cfg(feature = "harness")]
+pub use exhibits::{FoundBy, motion_scene};
 #[cfg(all(feature = "cli", feature = "harness"))]
 pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]

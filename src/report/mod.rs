@@ -12,4 +12,5 @@ mod provenance;
 mod write;
 
 pub use error::ReportError;
-pub use write::{Report, Target, write, write_all};
+pub use page::motion_page;
+pub use write::{Report, Target, tables, write, write_all};

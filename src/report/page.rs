@@ -87,6 +87,21 @@ struct TableContent<'a> {
     is_drawn: bool,
 }
 
+/// A page that shows one motion and nothing else.
+pub fn motion_page(name: &str, scene: Scene) -> Result<String, ReportError> {
+    Page {
+        name,
+        findings: &[],
+        scenes: &[scene],
+        motions_found: 1,
+        charts: &[],
+        tables: &[],
+        files: &[],
+        facts: &[],
+    }
+    .html()
+}
+
 impl Page<'_> {
     /// The file.
     pub(super) fn html(&self) -> Result<String, ReportError> {

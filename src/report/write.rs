@@ -133,6 +133,17 @@ pub fn write_all(
     })
 }
 
+/// The tables that a report of the same runs has.
+pub fn tables(plan: &Plan, stores: &[&Store]) -> Result<Vec<Table>, ReportError> {
+    let runs = load_all(plan, stores)?;
+    let targets = targets(plan, &runs);
+    let analysis = Analysis::new(plan, &runs, &targets);
+    let own = analysis.exhibits();
+    let mut tables = analysis.tables(own.tables)?;
+    tables.extend(own.chart_tables);
+    Ok(tables)
+}
+
 /// How many runs the report in a folder shows, if there is one.
 fn reported_runs(folder: &Path) -> Option<usize> {
     let table = folder.join(TABLES_FOLDER).join("runs.csv");

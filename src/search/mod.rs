@@ -111,6 +111,7 @@ mod evaluation;
 mod failure;
 mod inner;
 mod oracle;
+mod outside;
 mod points;
 mod problem;
 mod rng;

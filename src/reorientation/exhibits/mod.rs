@@ -25,6 +25,7 @@ use motion_charts::MOTION_NAMES;
 pub(crate) use motion_charts::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]
 pub(super) use motion_table::motion_table;
+pub use scene::{FoundBy, motion_scene};
 
 use crate::exhibit::Exhibits;
 use crate::experiment::Results;

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::best::BestMotion;
 use crate::exhibit::Scene;
 use crate::posture::{Posture, Satellite};
+use crate::reorientation::any::AnyReorientation;
 use crate::reorientation::excursions::Excursions;
 use crate::reorientation::motion::Motion;
 use crate::robot::{MovingJoint, Robot};
@@ -58,25 +59,54 @@ struct JointScene {
     states: Vec<[f64; 4]>,
 }
 
+/// Who found a motion, where.
+#[derive(Debug, Clone, Copy)]
+pub struct FoundBy<'a> {
+    /// The instance's label; empty where there is but one.
+    pub label: &'a str,
+    /// Who found it.
+    pub optimiser: &'a str,
+    /// With which seed.
+    pub seed: u64,
+    /// Its certified cost.
+    pub cost: f64,
+}
+
 impl<'a> MotionScene<'a> {
-    fn of(best: &'a BestMotion<'_>, intervals: usize) -> Self {
-        let (run, task) = (best.run, best.problem.task());
-        let motion = best.sample(intervals);
-        let excursions = Excursions::of(task, &motion);
+    fn new(task: &Task, motion: &Motion, found: FoundBy<'a>) -> Self {
+        let FoundBy { label, optimiser, seed, cost } = found;
+        let excursions = Excursions::of(task, motion);
         Self {
-            label: &best.instance.label,
-            optimiser: best.optimiser,
-            seed: run.seed,
-            cost: run.cost,
-            duration: best.duration,
+            label,
+            optimiser,
+            seed,
+            cost,
+            duration: motion.time.last().copied().unwrap_or_default(),
             largest_turn: excursions.base_turn.to_degrees(),
             largest_turn_at: excursions.base_turn_at,
             satellite: Satellite::of(&task.robot),
-            frames: frames(&task.robot, &motion),
-            joints: joints(task, &motion),
+            frames: frames(&task.robot, motion),
+            joints: joints(task, motion),
             goal: Posture::of(&task.robot, &task.goal.joints, task.goal.base),
         }
     }
+
+    fn of(best: &'a BestMotion<'_>, intervals: usize) -> Self {
+        let (label, optimiser) = (&*best.instance.label, best.optimiser);
+        let found = FoundBy { label, optimiser, seed: best.run.seed, cost: best.run.cost };
+        Self::new(best.problem.task(), &best.sample(intervals), found)
+    }
+}
+
+/// A motion of a task for a page to show.
+pub fn motion_scene(
+    problem: &dyn AnyReorientation,
+    coefficients: &[f64],
+    duration: f64,
+    found: FoundBy<'_>,
+) -> Option<Scene> {
+    let motion = problem.sample(coefficients, duration, INTERVALS);
+    Scene::new(&MotionScene::new(problem.task(), &motion, found))
 }
 
 /// The first of the best motions.

@@ -1,0 +1,18 @@
+"""The command: ``driftless``, or ``python -m driftless``."""
+
+from __future__ import annotations
+
+import sys
+
+from ._driftless import command
+
+__all__ = ["main"]
+
+
+def main() -> None:
+    """Does what the arguments ask, as the command does that is built without Python."""
+    sys.exit(command(["driftless", *sys.argv[1:]]))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,223 @@
+"""Motions of a task."""
+
+from __future__ import annotations
+
+import html
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from . import _driftless
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+__all__ = ["Motion", "Samples"]
+
+_Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Samples:
+    """A motion at equally spaced times; ``n`` of them.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        Time since the start [s].
+    joints : tuple of str
+        The joints' names, from the base outward.
+    angle, rate, acceleration, jerk : ndarray, shape (n, joints)
+        Of every joint [rad, rad/s, rad/s², rad/s³].
+    base : ndarray, shape (n, 4)
+        The base's attitude as a unit quaternion (w, x, y, z), base axes into inertial axes.
+    base_zyx : ndarray, shape (n, 3)
+        The same as ZYX Euler angles: yaw, pitch, roll [rad], without jumps of a full turn.
+    """
+
+    time: _Array
+    joints: tuple[str, ...]
+    angle: _Array
+    rate: _Array
+    acceleration: _Array
+    jerk: _Array
+    base: _Array
+    base_zyx: _Array
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __repr__(self) -> str:
+        end = self.time[-1]
+        return f"<driftless.Samples: {len(self)} times from 0 to {end:.3f} s, {len(self.joints)} joints>"
+
+    def to_polars(self) -> pl.DataFrame:
+        """The samples as a table with one row per time and joint, as `Motion.save` writes it."""
+        joints = len(self.joints)
+        columns: dict[str, Any] = {"time": np.repeat(self.time, joints), "joint": list(self.joints) * len(self)}
+        for name in ("angle", "rate", "acceleration", "jerk"):
+            columns[name] = getattr(self, name).ravel()
+        for k, name in enumerate(("base_w", "base_x", "base_y", "base_z")):
+            columns[name] = np.repeat(self.base[:, k], joints)
+        return pl.DataFrame(columns)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The same table for pandas, which has to be installed."""
+        import pandas as pd
+
+        return pd.DataFrame(self.to_polars().to_dict(as_series=False))
+
+
+class Motion:
+    """A motion of a task: where the joints go, and what is known of it.
+
+    `plan` makes motions, as do `Problem.motion`, `Task.motion` and `Result.motion`. All numbers are certified: evaluated ever more finely
+    until they no longer change.
+    """
+
+    def __init__(
+        self, core: _driftless.Motion, told: dict[str, Any] | None = None, remark: str | None = None
+    ) -> None:
+        self._core = core
+        self._told: dict[str, Any] = core.json if told is None else told
+        self._remark = core.remark if remark is None else remark
+
+    @property
+    def cost(self) -> float:
+        """The cost J (eq. 25)."""
+        return self._core.cost
+
+    @property
+    def duration(self) -> float:
+        """How long it takes [s]."""
+        return self._core.duration
+
+    @property
+    def residual_deg(self) -> float:
+        """How far the base ends from its goal [°]."""
+        return self._core.residual_deg
+
+    @property
+    def reached(self) -> bool:
+        """Whether the base ends at its goal, and all limits and ranges are kept."""
+        return self._core.reached
+
+    @property
+    def within_limits(self) -> bool:
+        """Whether all limits and ranges are kept."""
+        return bool(self._told["within_limits"])
+
+    @property
+    def status(self) -> str:
+        """``"reached"``, ``"not-found"`` where another motion may reach the goal, or ``"out-of-reach"`` where none does."""
+        return str(self._told["status"])
+
+    @property
+    def remark(self) -> str | None:
+        """Why the goal is missed, or what may make the motion better."""
+        return self._remark
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether the search was interrupted."""
+        return self._core.interrupted
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints' names, from the base outward."""
+        return tuple(self._core.joints)
+
+    @property
+    def coefficients(self) -> _Array:
+        """The motion's coefficients in its family, shape (joints, coefficients per joint)."""
+        return self._core.coefficients
+
+    @property
+    def peaks(self) -> dict[str, _Array]:
+        """Largest ``rate_deg_s``, ``acceleration_deg_s2`` and ``jerk_deg_s3`` of every joint, shape (joints,)."""
+        return {name: np.array(values) for name, values in self._told["peaks"].items()}
+
+    @property
+    def largest_base_turn_deg(self) -> float:
+        """How far the base turns from its attitude at the start on the way, at most [°]."""
+        return float(self._told["largest_base_turn_deg"])
+
+    def as_dict(self) -> dict[str, Any]:
+        """All that is known of it: the fields that ``driftless plan --json`` prints."""
+        return dict(self._told)
+
+    def sample(self, dt: float | None = None) -> Samples:
+        """The motion at equally spaced times.
+
+        Parameters
+        ----------
+        dt : float, optional
+            Time between samples at most [s]: the least number of equal steps that are no longer, from start to end. Without it, 500 steps.
+
+        Returns
+        -------
+        Samples
+        """
+        time, (angle, rate, acceleration, jerk), base, base_zyx = self._core.sample(dt)
+        return Samples(time, self.joints, angle, rate, acceleration, jerk, base, base_zyx)
+
+    def to_polars(self, dt: float | None = None) -> pl.DataFrame:
+        """The samples as a table with one row per time and joint; `dt` as for `sample`."""
+        return self.sample(dt).to_polars()
+
+    def to_pandas(self, dt: float | None = None) -> pd.DataFrame:
+        """The same table for pandas, which has to be installed."""
+        return self.sample(dt).to_pandas()
+
+    def save(self, path: str | os.PathLike[str], dt: float | None = None) -> None:
+        """Writes the samples into a file.
+
+        Parameters
+        ----------
+        path : path-like
+            A name in ``.csv``, ``.parquet``, or ``.yaml`` for a ROS JointTrajectory.
+        dt : float, optional
+            As for `sample`.
+        """
+        self._core.save(os.fspath(path), dt)
+
+    def save_page(self, path: str | os.PathLike[str]) -> None:
+        """Writes a page that shows the motion in three dimensions; it holds all its data and loads nothing."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self._core.page("Motion"))
+
+    def plot(self, dt: float | None = None) -> Figure:
+        """Draws joint angles, their rates, accelerations and jerks with the limits, and the base's attitude with its goal.
+
+        Needs matplotlib. The panels are those of Figures 4, 5 and 6 of Xiao et al. (2023).
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        from ._plot import plot
+
+        return plot(self, dt)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        from ._restore import motion
+
+        if self._core.state is None:
+            raise TypeError("a motion of an experiment cannot be pickled; its task's file can, with `coefficients`")
+        return (motion, (*self._core.state, self._told, self.remark))
+
+    def __repr__(self) -> str:
+        verdict = "reaches its goal" if self.reached else f"misses its goal by {self.residual_deg:.3g}°"
+        return f"<driftless.Motion: {self.duration:.4f} s, J {self.cost:.6f}, {verdict}>"
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self._core.page("Motion"), quote=True)
+        return (
+            f"<p>{html.escape(repr(self)[1:-1])}</p>"
+            f'<iframe srcdoc="{page}" style="width:100%;height:640px;border:0" loading="lazy"></iframe>'
+        )

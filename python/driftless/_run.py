@@ -1,0 +1,428 @@
+"""Running experiments, and what they have found."""
+
+from __future__ import annotations
+
+import html
+import io
+import logging
+import os
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+
+from . import _driftless
+from ._driftless import Problem
+from ._errors import InputError
+from ._field import Builtin, Function, Optimiser, external_table
+from ._motion import Motion
+from ._progress import Progress
+from ._suites import _FIELD
+from ._task import Task
+from ._toml import value
+
+__all__ = ["Figure", "Figures", "Result", "open_results", "run"]
+
+_log = logging.getLogger("driftless")
+
+_Entrant = Optimiser | Builtin | str
+_Minimised = Problem | Function | Task
+
+
+class Figure:
+    """A figure of a report, as SVG in a notebook.
+
+    Attributes
+    ----------
+    name : str
+        What it is called.
+    svg, pdf, png : pathlib.Path
+        Its files.
+    """
+
+    def __init__(self, folder: Path, name: str) -> None:
+        self.name = name
+        self.svg, self.pdf, self.png = (folder / f"{name}.{kind}" for kind in ("svg", "pdf", "png"))
+
+    def _repr_svg_(self) -> str:
+        return self.svg.read_text(encoding="utf-8")
+
+    def __repr__(self) -> str:
+        return f"<driftless.Figure {self.name}: {self.svg}>"
+
+
+class Figures(Mapping[str, Figure]):
+    """The figures of a report, by name."""
+
+    def __init__(self, folder: Path) -> None:
+        self._all = {file.stem: Figure(folder, file.stem) for file in sorted(folder.glob("*.svg"))}
+
+    def __getitem__(self, name: str) -> Figure:
+        try:
+            return self._all[name]
+        except KeyError:
+            raise KeyError(f"found no figure {name!r}, expected one of {', '.join(self._all)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __repr__(self) -> str:
+        return f"<driftless.Figures {', '.join(self._all)}>"
+
+
+class Result:
+    """What an experiment has found: a folder of results. `run` and `open_results` give one.
+
+    Numbers and tables are those that are stored when they are first asked for.
+    """
+
+    def __init__(self, core: _driftless.Results) -> None:
+        self._core = core
+        self._findings: list[tuple[str, str]] | None = None
+
+    @property
+    def path(self) -> Path:
+        """The folder."""
+        return Path(self._core.path)
+
+    @property
+    def name(self) -> str:
+        """The experiment's name."""
+        return self._core.name
+
+    @property
+    def instances(self) -> tuple[str, ...]:
+        """The labels of its instances; an empty one where there is but one."""
+        return tuple(self._core.instances)
+
+    @property
+    def optimisers(self) -> tuple[str, ...]:
+        """The labels of its optimisers."""
+        return tuple(self._core.optimisers)
+
+    @property
+    def planned(self) -> int:
+        """Runs that the experiment asks for."""
+        return self._core.counts[0]
+
+    @property
+    def stored(self) -> int:
+        """Runs that are stored."""
+        return self._core.counts[1]
+
+    @property
+    def failed(self) -> int:
+        """Stored runs that failed."""
+        return self._core.counts[2]
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """The names of its tables."""
+        return tuple(self._core.names())
+
+    def table(self, name: str) -> pl.DataFrame:
+        """A table of the report, such as ``"summary"``, ``"fixed-target"`` or ``"pairs"``; `tables` has all names.
+
+        Parameters
+        ----------
+        name : str
+            The table's name.
+
+        Returns
+        -------
+        polars.DataFrame
+            ``to_pandas()`` makes a table of pandas of it.
+        """
+        data = self._core.table(name)
+        if data is None:
+            raise KeyError(f"found no table {name!r}, expected one of {', '.join(self.tables)}")
+        return pl.read_parquet(io.BytesIO(data))
+
+    def caption(self, name: str) -> str:
+        """What a table shows, in words."""
+        return self._core.captions()[name]
+
+    def motion(self, instance: str = "") -> Motion:
+        """The best motion of an instance that is a task.
+
+        Parameters
+        ----------
+        instance : str, optional
+            The instance's label; the only one without.
+        """
+        if not instance and len(self.instances) == 1:
+            instance = self.instances[0]
+        found = self._core.motion(instance)
+        if found is None:
+            raise KeyError(f"found no motion of {instance!r}, expected one of {self.instances} that is a task")
+        return found
+
+    def report(self, out: str | os.PathLike[str] | None = None, *, replace: bool = False) -> Path:
+        """Writes tables, figures and a page of all that is stored.
+
+        Parameters
+        ----------
+        out : path-like, optional
+            A folder; without it, that of the results.
+        replace : bool, optional
+            Whether to replace a report of more runs than are stored now.
+
+        Returns
+        -------
+        pathlib.Path
+            The page.
+        """
+        told = self._core.report(None if out is None else os.fspath(out), replace)
+        if told["kept"] is not None:
+            _log.warning("%s shows %d runs, more than are stored, and was left as it was", told["page"], told["kept"])
+        self._findings = [(str(question), str(answer)) for question, answer in told["findings"]]
+        return Path(told["page"])
+
+    @property
+    def findings(self) -> list[tuple[str, str]]:
+        """What the runs say, in words: questions and answers."""
+        if self._findings is None:
+            self.report()
+        return list(self._findings or [])
+
+    @property
+    def figures(self) -> Figures:
+        """The figures of the report, by name. The report is written first."""
+        return Figures(self.report().parent / "figures")
+
+    def __repr__(self) -> str:
+        failed = f", {self.failed} failed" if self.failed else ""
+        return f"<driftless.Result {self.name}: {self.stored} of {self.planned} runs{failed}, in {self.path}>"
+
+    def _repr_html_(self) -> str:
+        answers = "".join(f"<p><b>{html.escape(q)}</b> {html.escape(a)}</p>" for q, a in self.findings)
+        return f"<p>{html.escape(repr(self)[1:-1])}</p>{self.table('summary')._repr_html_()}{answers}"
+
+
+def open_results(path: str | os.PathLike[str]) -> Result:
+    """Opens a folder of results, whoever made it. Nothing is written.
+
+    Parameters
+    ----------
+    path : path-like
+        The folder.
+
+    Raises
+    ------
+    ResultsError
+        There are no results.
+    """
+    return Result(_driftless.Results.open(os.fspath(path)))
+
+
+def run(
+    experiment: str | os.PathLike[str] | None = None,
+    *,
+    optimisers: _Entrant | Sequence[_Entrant] = (),
+    problems: _Minimised | Sequence[_Minimised] | Mapping[str, _Minimised] = (),
+    name: str | None = None,
+    seeds: int | None = None,
+    budget: int | None = None,
+    out: str | os.PathLike[str] | None = None,
+    jobs: int | None = None,
+    retry: bool = False,
+    fresh: bool = False,
+    trust: bool = False,
+    isolation: str | None = None,
+    progress: bool = True,
+) -> Result:
+    """Runs an experiment: every optimiser on every problem, for every seed.
+
+    Runs that are stored are not done again, whether the command or Python has done them. Ctrl-C ends the experiment; the same
+    call goes on from there.
+
+    Parameters
+    ----------
+    experiment : path-like, optional
+        An experiment file, as ``driftless run`` takes it. `optimisers` and `problems` are entered beside those of the file.
+    optimisers : str, Optimiser, Builtin or a sequence of these, optional
+        Names of optimisers of the package, functions decorated by `optimiser`, and those that `builtin`, `scipy`, `cma`,
+        `minionpy` and `nevergrad` make.
+    problems : Task, Problem, Function, a sequence or a mapping of these, optional
+        What is minimised; the keys of a mapping are labels.
+    name : str, optional
+        The experiment's name, where there is no file.
+    seeds : int, optional
+        Number of seeds, instead of the file's or 15. They are 1, 2, … for every optimiser and problem.
+    budget : int, optional
+        Evaluations per run, instead of the file's or 150,000.
+    out : path-like, optional
+        Folder for the results, instead of ``results/NAME``.
+    jobs : int, optional
+        Runs at a time; one per processor without.
+    retry, fresh : bool, optional
+        Whether to do stored runs again that have failed, or all.
+    trust : bool, optional
+        Whether to start programs that a file of results names, which may come from anybody.
+    isolation : {"thread", "process"}, optional
+        Where functions run, instead of what each says; see `Optimiser`.
+    progress : bool, optional
+        Whether to show a bar.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    InputError
+        A file or an argument cannot be used.
+    ResultsError
+        Results cannot be read or written.
+    KeyboardInterrupt
+        Ctrl-C.
+
+    Examples
+    --------
+    >>> import driftless, tempfile
+    >>> @driftless.optimiser
+    ... def guess(oracle, rng):
+    ...     while True:
+    ...         oracle.batch(rng.uniform(oracle.lower, oracle.upper, (50, oracle.dimension)))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     result = driftless.run(
+    ...         problems=driftless.functions("sphere", dimension=3),
+    ...         optimisers=[guess, "cma-es"],
+    ...         seeds=3, budget=500, out=folder, progress=False,
+    ...     )
+    ...     result.table("summary")["optimiser"].to_list()
+    ['guess', 'cma-es']
+    """
+    entrants = [optimisers] if isinstance(optimisers, (str, Optimiser, Builtin)) else list(optimisers)
+    if isolation is not None:
+        entrants = [e.replace(isolation=isolation) if isinstance(e, Optimiser) else e for e in entrants]
+    core = _experiment(experiment, name, _labelled(problems))
+    core = _enter(core, _apart(entrants))
+    if seeds is not None:
+        core = core.with_seeds(seeds)
+    if budget is not None:
+        core = core.with_budget(budget)
+    _check_programs(core, trust)
+    bar = Progress(progress, core.name)
+    watched = _Watched(bar)
+    again = "all" if fresh else "failed" if retry else None
+    folder = None if out is None else os.fspath(out)
+    try:
+        return Result(core.run(folder, jobs, again, watched.begin, watched.tick))
+    finally:
+        bar.end()
+
+
+class _Watched:
+    """Shows progress, and logs what becomes of runs."""
+
+    def __init__(self, bar: Progress) -> None:
+        self._bar = bar
+
+    def begin(self, folder: Any, missing: int, planned: int, evaluations: int) -> None:
+        _log.info("%d of %d runs are to be done, stored in %s", missing, planned, folder)
+        self._bar.begin(evaluations)
+
+    def tick(self, evaluations: int, ended: list[tuple[str, str, int, str, str]]) -> None:
+        self._bar.update(evaluations)
+        for optimiser, instance, seed, found, message in ended:
+            level = logging.WARNING if message else logging.INFO
+            where = f"{optimiser} {instance}".strip()
+            _log.log(level, "%s seed %d: %s%s", where, seed, found, f": {message}" if message else "")
+
+
+def _labelled(problems: _Minimised | Sequence[_Minimised] | Mapping[str, _Minimised]) -> dict[str, _Minimised]:
+    if isinstance(problems, Mapping):
+        return dict(problems)
+    all_ = [problems] if isinstance(problems, (Problem, Function, Task)) else list(problems)
+    labelled: dict[str, _Minimised] = {}
+    for one in all_:
+        label = one.robot if isinstance(one, Task) else one.name if isinstance(one, Function) else one.label or one.name
+        if label in labelled:
+            raise ValueError(f"found two problems {label!r}, expected a mapping with a label for each")
+        labelled[label] = one
+    return labelled
+
+
+def _experiment(
+    path: str | os.PathLike[str] | None, name: str | None, problems: dict[str, _Minimised]
+) -> _driftless.Experiment:
+    if path is not None:
+        if name is not None:
+            raise ValueError("found a name beside an experiment file, which has one")
+        core = _driftless.Experiment.read(os.fspath(path))
+        if core.imported is not None:
+            raise InputError(f"these results were imported, from {core.imported}, and cannot be run", os.fspath(path))
+    else:
+        name = name or "python"
+        if not problems:
+            raise ValueError("found neither an experiment file nor problems, expected something to minimise")
+        tasks = [one for one in problems.values() if isinstance(one, Task)]
+        if len(tasks) == len(problems) == 1:
+            # As a file with a task, so that the command can do what is missing, too.
+            text = f"name = {value(name)}\n{tasks[0]._core.text}{_FIELD}"
+            return _driftless.Experiment.parse(tasks[0]._core.path, text).without_optimisers()
+        core = _driftless.Experiment(name)
+    for label, one in problems.items():
+        if isinstance(one, Function):
+            box = one.lower.tolist(), one.upper.tolist()
+            core = core.with_function(
+                label, one.identity(), one.function, one.batched, *box, one.least_cost, list(one.targets)
+            )
+        else:
+            core = core.with_problem(one.problem() if isinstance(one, Task) else one, label, [])
+    return core
+
+
+def _apart(entrants: list[_Entrant]) -> list[_Entrant]:
+    """Labels by their settings those functions that have a name more than once."""
+    names = Counter(e.name for e in entrants if isinstance(e, Optimiser) and e.label is None)
+    apart: list[_Entrant] = []
+    for entrant in entrants:
+        if isinstance(entrant, Optimiser) and entrant.label is None and names[entrant.name] > 1:
+            parts = [f"{key}={x}" for key, x in entrant.settings.items()]
+            entrant = entrant.replace(label=" ".join([entrant.name, *parts]))
+        apart.append(entrant)
+    return apart
+
+
+def _enter(core: _driftless.Experiment, entrants: list[_Entrant]) -> _driftless.Experiment:
+    for entrant in entrants:
+        if isinstance(entrant, str):
+            entrant = Builtin(entrant)
+        if isinstance(entrant, Optimiser) and entrant.isolation == "thread":
+            core = core.with_optimiser(
+                entrant.name,
+                entrant.label,
+                entrant.identity(),
+                entrant.function,
+                dict(entrant.settings),
+                entrant.formulation,
+                entrant.needs_derivatives,
+                entrant.seeds,
+                entrant.budget,
+            )
+            continue
+        table = external_table(entrant) if isinstance(entrant, Optimiser) else entrant.to_toml()
+        what = entrant.label or entrant.name
+        if not re.fullmatch(r"[a-z][a-z-]*", entrant.name) and isinstance(entrant, Builtin):
+            raise InputError(f"found no optimiser {entrant.name!r}, expected a name such as 'cma-es'")
+        text = f'name = "field"\n{table}'
+        core = core.with_optimisers_of(_driftless.Experiment.parse(os.path.abspath(what), text))
+    return core
+
+
+def _check_programs(core: _driftless.Experiment, trust: bool) -> None:
+    for program, is_from_results in core.programs:
+        if is_from_results and not trust:
+            raise InputError(
+                f"a file of results, which may come from anybody, starts {program}",
+                hint="look at it, and pass trust=True to start it",
+            )
+        _log.info("this experiment starts %s", program)

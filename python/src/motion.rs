@@ -1,0 +1,249 @@
+//! Motions of a task.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use driftless::reorientation::{
+    AnyReorientation, Assessment, AssessmentJson, Excursions, ExcursionsJson, FoundBy, INTERVALS,
+    MotionFormat, Planned, Reach, ShapeJson, motion_scene, write_motion,
+};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyType;
+use serde_json::{Value, json};
+
+use crate::errors::{self, OrRaise as _};
+use crate::{arrays, json};
+
+/// Most intervals of a sampled motion.
+const MOST_INTERVALS: f64 = 1e7;
+
+/// A motion of a task, and what is known of it.
+#[pyclass(module = "driftless._driftless", frozen)]
+pub(crate) struct Motion {
+    problem: Arc<dyn AnyReorientation>,
+    coefficients: Vec<f64>,
+    /// Where the duration is not the shortest within the limits.
+    duration: Option<f64>,
+    assessment: Assessment,
+    /// What `plan --json` prints.
+    json: Value,
+    remark: Option<String>,
+    interrupted: bool,
+    /// Path and text of the task, where they are known.
+    source: Option<(String, String)>,
+}
+
+impl Motion {
+    pub(crate) fn planned(
+        planned: Planned,
+        json: Value,
+        remark: Option<String>,
+        source: (String, String),
+    ) -> Self {
+        let fixed = planned.problem.certify(&planned.coefficients, None);
+        let is_shortest = fixed.duration.to_bits() == planned.assessment.duration.to_bits();
+        Self {
+            duration: (!is_shortest).then_some(planned.assessment.duration),
+            problem: planned.problem,
+            coefficients: planned.coefficients,
+            assessment: planned.assessment,
+            interrupted: planned.interrupted,
+            json,
+            remark,
+            source: Some(source),
+        }
+    }
+
+    /// The motion with these coefficients, in `duration` seconds or the shortest time within the limits.
+    pub(crate) fn assessed(
+        problem: Arc<dyn AnyReorientation>,
+        coefficients: Vec<f64>,
+        duration: Option<f64>,
+        source: Option<(String, String)>,
+    ) -> Self {
+        let assessment = problem.certify(&coefficients, duration);
+        let task = problem.task();
+        let reach = Reach::of(task, &assessment, f64::INFINITY);
+        let excursions = Excursions::on_the_way(&*problem, &coefficients, assessment.duration);
+        let mut all = serde_json::Map::new();
+        for part in [
+            json!(problem.spec()),
+            json!({
+                "status": reach,
+                "reached": reach == Reach::Reached,
+                "tolerance_deg": task.goal_tolerance_deg(),
+                "within_limits": Reach::keeps_limits(&assessment),
+            }),
+            json!(AssessmentJson::from(&assessment)),
+            json!(ExcursionsJson::new(&excursions, task)),
+            json!(ShapeJson::new(&*problem, &coefficients, assessment.duration)),
+        ] {
+            if let Value::Object(part) = part {
+                all.extend(part);
+            }
+        }
+        let json = Value::Object(all);
+        let (remark, interrupted) = (None, false);
+        Self { problem, coefficients, duration, assessment, json, remark, interrupted, source }
+    }
+
+    /// As users see it: an object of the class `driftless.Motion`.
+    pub(crate) fn shown(self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+        let class = CLASS.import(py, "driftless._motion", "Motion")?;
+        Ok(class.call1((Py::new(py, self)?,))?.unbind())
+    }
+
+    fn json_number(&self, key: &str) -> Option<u64> {
+        self.json.get(key).and_then(Value::as_u64)
+    }
+
+    fn intervals(&self, dt: Option<f64>) -> PyResult<usize> {
+        let Some(dt) = dt else { return Ok(INTERVALS) };
+        let intervals = (self.assessment.duration / dt).ceil();
+        if dt > 0.0 && (1.0..=MOST_INTERVALS).contains(&intervals) {
+            return Ok(intervals as usize);
+        }
+        let message = format!(
+            "found dt = {dt} s, expected a time above zero that divides {:.3} s into {MOST_INTERVALS} parts at most",
+            self.assessment.duration
+        );
+        Err(PyValueError::new_err(message))
+    }
+}
+
+/// Time, joints' derivatives of orders 0 to 3, the base's attitude as quaternions and as Euler angles.
+type Samples<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray3<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<f64>>,
+);
+
+#[pymethods]
+impl Motion {
+    #[getter]
+    fn cost(&self) -> f64 {
+        self.assessment.cost
+    }
+
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.assessment.duration
+    }
+
+    #[getter]
+    fn residual_deg(&self) -> f64 {
+        self.assessment.residual().to_degrees()
+    }
+
+    #[getter]
+    fn reached(&self) -> bool {
+        self.json.get("reached").and_then(Value::as_bool).unwrap_or_default()
+    }
+
+    #[getter]
+    fn interrupted(&self) -> bool {
+        self.interrupted
+    }
+
+    #[getter]
+    fn remark(&self) -> Option<&str> {
+        self.remark.as_deref()
+    }
+
+    #[getter]
+    fn joints(&self) -> Vec<String> {
+        self.problem.task().robot.joints().map(|joint| joint.name.to_owned()).collect()
+    }
+
+    #[getter]
+    fn limits(&self) -> Vec<[f64; 3]> {
+        self.problem.task().limits.0.clone()
+    }
+
+    /// ZYX Euler angles of the goal nearest to those at the end of the motion \[rad\].
+    #[getter]
+    fn goal_zyx(&self) -> [f64; 3] {
+        let (roll, pitch, yaw) = self.problem.task().goal.base.euler_angles();
+        [yaw, pitch, roll]
+    }
+
+    #[getter]
+    fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = self.problem.task().robot.joint_count();
+        let columns = self.coefficients.len() / rows;
+        arrays::matrix(py, rows, columns, self.coefficients.clone())
+    }
+
+    #[getter]
+    fn json<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        json::to_python(py, &self.json)
+    }
+
+    /// Path and text of the task, coefficients and, where it is not the shortest, duration.
+    #[getter]
+    fn state(&self) -> Option<(String, String, Vec<f64>, Option<f64>)> {
+        let (path, text) = self.source.clone()?;
+        Some((path, text, self.coefficients.clone(), self.duration))
+    }
+
+    fn sample<'py>(&self, py: Python<'py>, dt: Option<f64>) -> PyResult<Samples<'py>> {
+        let intervals = self.intervals(dt)?;
+        let duration = self.assessment.duration;
+        let motion = py.detach(|| self.problem.sample(&self.coefficients, duration, intervals));
+        let (count, joints) = (motion.time.len(), motion.joints.len());
+        let mut derivatives = Vec::with_capacity(4 * count * joints);
+        for order in 0..4 {
+            for i in 0..count {
+                derivatives.extend(motion.joints.iter().map(|joint| joint.derivatives[i][order]));
+            }
+        }
+        let quaternions = motion.base.iter().flat_map(|base| {
+            let [x, y, z, w] = base.coords.into();
+            [w, x, y, z]
+        });
+        let zyx = motion.base_zyx().into_iter().flatten().collect();
+        Ok((
+            arrays::vector(py, motion.time.clone()),
+            arrays::vector(py, derivatives).reshape([4, count, joints])?,
+            arrays::matrix(py, count, 4, quaternions.collect())?,
+            arrays::matrix(py, count, 3, zyx)?,
+        ))
+    }
+
+    fn save(&self, py: Python<'_>, path: &str, dt: Option<f64>) -> PyResult<()> {
+        let format = MotionFormat::of(Path::new(path)).ok_or_else(|| {
+            let expected = "expected a name in .csv, .parquet or .yaml";
+            PyValueError::new_err(format!("cannot tell the format of {path}, {expected}"))
+        })?;
+        let intervals = self.intervals(dt)?;
+        let duration = self.assessment.duration;
+        py.detach(|| {
+            let motion = self.problem.sample(&self.coefficients, duration, intervals);
+            write_motion(Path::new(path), format, &motion)
+        })
+        .or_raise()
+    }
+
+    /// The page that shows the motion in three dimensions.
+    fn page(&self, py: Python<'_>, name: &str) -> PyResult<String> {
+        let optimiser = self.json.get("optimiser").and_then(Value::as_str).unwrap_or_default();
+        let found = FoundBy {
+            label: "",
+            optimiser,
+            seed: self.json_number("seed").unwrap_or_default(),
+            cost: self.assessment.cost,
+        };
+        let duration = self.assessment.duration;
+        let page = py.detach(|| {
+            let scene = motion_scene(&*self.problem, &self.coefficients, duration, found)?;
+            Some(driftless::report::motion_page(name, scene))
+        });
+        let none = || errors::search("the motion cannot be shown");
+        page.ok_or_else(none)?.or_raise()
+    }
+}

@@ -1,0 +1,376 @@
+//! The oracle of a run as a solver in Python sees it.
+
+use std::ptr::NonNull;
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, ThreadId};
+use std::time::{Duration, Instant};
+
+use driftless::search::{Evaluation, Points, Stop};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::arrays;
+use crate::errors::{self, Raised as _};
+use crate::problem::{Linearisation, Pair, both, inside};
+
+/// How often a solver that goes on after its search is over is told that everything costs infinitely much. After that its thread is
+/// stopped: it waits for ever within its next question.
+const PATIENCE: u32 = 1000;
+
+/// An oracle whose run is not over: what is behind the pointer outlives it, see [`Desk::open`].
+struct Open(NonNull<driftless::search::Oracle<'static>>);
+
+// SAFETY: an oracle may be sent to another thread, which this line would not compile without; see `is_send`.
+unsafe impl Send for Open {}
+
+const fn is_send<T: Send>() {}
+const _: () = is_send::<driftless::search::Oracle<'static>>();
+
+/// What a run and its solver share.
+pub(crate) struct Desk {
+    state: Mutex<State>,
+    /// Told when a solver goes on although its search is over.
+    gone_on: Mutex<Sender<super::solver::Ended>>,
+    process: u32,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    budget: u64,
+    has: [bool; 2],
+}
+
+#[derive(Default)]
+struct State {
+    /// None once the run is over.
+    oracle: Option<Open>,
+    /// Why the search is over, and since when.
+    stop: Option<(Stop, Instant)>,
+    /// Whether a solver has learnt of it.
+    is_told: bool,
+    /// How often something was asked after that.
+    asked_since: u32,
+    /// The solver's own thread, and whether the run has gone on without it.
+    solver: Option<ThreadId>,
+    is_left: bool,
+    /// Points that were outside the box.
+    outside: usize,
+}
+
+/// Closes a desk when the run is over.
+pub(crate) struct Close<'a>(&'a Desk);
+
+impl Drop for Close<'_> {
+    fn drop(&mut self) {
+        self.0.lock().oracle = None;
+    }
+}
+
+impl Desk {
+    pub(crate) fn new(
+        oracle: &driftless::search::Oracle<'_>,
+        gone_on: Sender<super::solver::Ended>,
+    ) -> Self {
+        let side = |side: usize| oracle.bounds().iter().map(|pair| pair[side]).collect();
+        Self {
+            state: Mutex::default(),
+            gone_on: Mutex::new(gone_on),
+            process: std::process::id(),
+            lower: side(0),
+            upper: side(1),
+            budget: oracle.remaining(),
+            has: [oracle.has_subgradients(), oracle.has_terms()],
+        }
+    }
+
+    /// Lets solvers ask an oracle as long as the value that this returns is kept.
+    pub(crate) fn open<'a>(&'a self, oracle: &'a mut driftless::search::Oracle<'_>) -> Close<'a> {
+        let pointer = NonNull::from(oracle).cast::<driftless::search::Oracle<'static>>();
+        self.lock().oracle = Some(Open(pointer));
+        Close(self)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Why the search is over, and how many points were outside the box.
+    pub(crate) fn outcome(&self) -> (Option<Stop>, usize) {
+        let state = self.lock();
+        (state.stop.as_ref().map(|(stop, _)| stop.clone()), state.outside)
+    }
+
+    /// Says that this is the solver's thread.
+    pub(crate) fn enter(&self) {
+        self.lock().solver = Some(thread::current().id());
+    }
+
+    /// Says that the run goes on without its solver.
+    pub(crate) fn leave(&self) {
+        self.lock().is_left = true;
+    }
+
+    /// How long the search has been over, where it is.
+    pub(crate) fn over_for(&self) -> Option<Duration> {
+        let state = self.state.try_lock().ok()?;
+        state.stop.as_ref().map(|(_, since)| since.elapsed())
+    }
+
+    /// Notices an interruption of a run whose solver asks nothing.
+    pub(crate) fn look_for_interruption(&self) {
+        let Ok(mut state) = self.state.try_lock() else { return };
+        let is_interrupted = state.oracle.as_ref().is_some_and(|oracle| {
+            // SAFETY: as in `State::ask`.
+            unsafe { oracle.0.as_ref() }.is_interrupted()
+        });
+        if is_interrupted && state.stop.is_none() {
+            state.stop = Some((Stop::Interrupted, Instant::now()));
+        }
+    }
+
+    /// Asks the oracle, from whichever thread. None where the search has been over for some time and a solver has not noticed.
+    fn ask<R: Send>(
+        &self,
+        py: Python<'_>,
+        is_long: bool,
+        question: impl FnOnce(&mut driftless::search::Oracle<'_>, &mut usize) -> Result<R, Stop> + Send,
+    ) -> PyResult<Option<R>> {
+        if self.process != std::process::id() {
+            return Err(errors::closed("this oracle belongs to a run of another process"));
+        }
+        // A thread that has the lock may need Python before it lets go of it, so it is waited for without.
+        let free = if is_long { None } else { self.state.try_lock().ok() };
+        let answer = match free {
+            Some(mut state) => state.ask(question),
+            None => py.detach(|| self.lock().ask(question)),
+        };
+        match answer {
+            Answer::Found(found) => Ok(Some(found)),
+            Answer::Stopped(stop) => Err(stop.raised()),
+            Answer::Over => Ok(None),
+            Answer::Ended => Err(errors::closed("the run of this oracle is over")),
+            Answer::NeverMind => {
+                let gone_on = self.gone_on.lock().unwrap_or_else(PoisonError::into_inner);
+                let _ = gone_on.send(super::solver::Ended::WentOn);
+                drop(gone_on);
+                py.detach(|| {
+                    loop {
+                        thread::park();
+                    }
+                })
+            }
+        }
+    }
+}
+
+/// What comes of a question.
+enum Answer<R> {
+    Found(R),
+    /// The search is over, and the solver learns of it.
+    Stopped(Stop),
+    /// It has learnt of it and goes on.
+    Over,
+    /// It goes on and on.
+    NeverMind,
+    /// The run is over.
+    Ended,
+}
+
+impl State {
+    fn ask<R>(
+        &mut self,
+        question: impl FnOnce(&mut driftless::search::Oracle<'_>, &mut usize) -> Result<R, Stop>,
+    ) -> Answer<R> {
+        let is_solver = self.solver == Some(thread::current().id());
+        let Some(oracle) = &mut self.oracle else {
+            return if self.is_left && is_solver { Answer::NeverMind } else { Answer::Ended };
+        };
+        if let Some((stop, _)) = &self.stop {
+            if !std::mem::replace(&mut self.is_told, true) {
+                return Answer::Stopped(stop.clone());
+            }
+            self.asked_since += 1;
+            return match (self.asked_since > PATIENCE, is_solver) {
+                (false, _) => Answer::Over,
+                (true, true) => Answer::NeverMind,
+                // Others may be waited for when Python ends.
+                (true, false) => Answer::Stopped(stop.clone()),
+            };
+        }
+        // SAFETY: `Desk::open` borrows the oracle mutably until `Close` is dropped, which takes the pointer away under the lock that
+        // is held here. So the oracle is alive, and nobody else uses it.
+        let oracle = unsafe { oracle.0.as_mut() };
+        match question(oracle, &mut self.outside) {
+            Ok(found) => Answer::Found(found),
+            Err(stop) => {
+                self.stop = Some((stop.clone(), Instant::now()));
+                self.is_told = true;
+                Answer::Stopped(stop)
+            }
+        }
+    }
+}
+
+/// The only door from a solver to its problem.
+#[pyclass(module = "driftless", frozen)]
+pub(crate) struct Oracle(pub(crate) Arc<Desk>);
+
+impl Oracle {
+    fn dimension_of(&self) -> usize {
+        self.0.lower.len()
+    }
+
+    fn costs(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Vec<Evaluation>> {
+        let points = arrays::points(x, self.dimension_of())?;
+        let count = points.len();
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let found = self.0.ask(py, true, |oracle, outside| {
+            let mut found = Vec::with_capacity(count);
+            let (beyond, outcome) = oracle.evaluate_anywhere(points, &mut found);
+            *outside += beyond;
+            outcome.map(|()| found)
+        })?;
+        Ok(found.unwrap_or_else(|| vec![Evaluation::new(f64::INFINITY, f64::INFINITY); count]))
+    }
+
+    fn one(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Evaluation> {
+        let mut points = Points::zeros(self.dimension_of(), 1);
+        points[0].copy_from_slice(&arrays::point(x, self.dimension_of())?);
+        let found = self.0.ask(py, false, |oracle, outside| {
+            if oracle.bounds().snap(&mut points[0]) {
+                return oracle.evaluate(&points[0]);
+            }
+            oracle.refuse()?;
+            *outside += 1;
+            Ok(Evaluation::new(f64::INFINITY, f64::INFINITY))
+        })?;
+        Ok(found.unwrap_or(Evaluation::new(f64::INFINITY, f64::INFINITY)))
+    }
+
+    /// What the oracle itself says, where its run is not over.
+    fn look<R: Send>(
+        &self,
+        py: Python<'_>,
+        question: impl FnOnce(&driftless::search::Oracle<'_>) -> R + Send,
+    ) -> PyResult<R> {
+        let look = || {
+            let state = self.0.lock();
+            // SAFETY: as in `State::ask`.
+            state.oracle.as_ref().map(|oracle| question(unsafe { oracle.0.as_ref() }))
+        };
+        py.detach(look).ok_or_else(|| errors::closed("the run of this oracle is over"))
+    }
+
+    /// Evaluations made, and left.
+    fn counts(&self, py: Python<'_>) -> PyResult<(u64, u64)> {
+        self.look(py, |oracle| (oracle.evaluations(), oracle.remaining()))
+    }
+
+    fn bounds(&self) -> driftless::search::Bounds {
+        let pairs = self.0.lower.iter().zip(&self.0.upper).map(|(&l, &u)| [l, u]).collect();
+        driftless::search::Bounds::new(pairs)
+            .unwrap_or_else(|_| driftless::search::Bounds::cube(1, [0.0, 0.0]))
+    }
+}
+
+#[pymethods]
+impl Oracle {
+    #[getter]
+    fn dimension(&self) -> usize {
+        self.dimension_of()
+    }
+
+    #[getter]
+    fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        arrays::vector(py, self.0.lower.clone())
+    }
+
+    #[getter]
+    fn upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        arrays::vector(py, self.0.upper.clone())
+    }
+
+    #[getter]
+    fn budget(&self) -> u64 {
+        self.0.budget
+    }
+
+    #[getter]
+    fn remaining(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(self.counts(py)?.1)
+    }
+
+    #[getter]
+    fn evaluations(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(self.counts(py)?.0)
+    }
+
+    #[getter]
+    fn best<'py>(&self, py: Python<'py>) -> PyResult<Option<(Bound<'py, PyArray1<f64>>, f64)>> {
+        let best = self.look(py, |oracle| oracle.best().cloned())?;
+        Ok(best.map(|best| (arrays::vector(py, best.x), best.evaluation.cost)))
+    }
+
+    #[getter]
+    fn has_subgradient(&self) -> bool {
+        self.0.has[0]
+    }
+
+    #[getter]
+    fn has_linearise(&self) -> bool {
+        self.0.has[1]
+    }
+
+    fn __call__(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<f64> {
+        Ok(self.one(py, x)?.cost)
+    }
+
+    fn evaluate(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+        let found = self.one(py, x)?;
+        Ok((found.cost, found.violation))
+    }
+
+    fn batch<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let found = self.costs(py, x)?;
+        Ok(arrays::vector(py, found.into_iter().map(|found| found.cost).collect()))
+    }
+
+    fn evaluate_batch(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Pair> {
+        Ok(both(py, &self.costs(py, x)?))
+    }
+
+    fn subgradient<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<'py, PyAny>,
+    ) -> PyResult<(f64, Bound<'py, PyArray1<f64>>)> {
+        self.check(0)?;
+        let x = inside(&self.bounds(), x)?;
+        let found = self.0.ask(py, true, |oracle, _| oracle.subgradient(&x))?;
+        let found = found.ok_or_else(|| Stop::BudgetSpent.raised())?;
+        Ok((found.evaluation.cost, arrays::vector(py, found.slopes.as_slice().to_vec())))
+    }
+
+    fn linearise(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Linearisation> {
+        self.check(1)?;
+        let x = inside(&self.bounds(), x)?;
+        let found = self.0.ask(py, true, |oracle, _| oracle.linearise(&x))?;
+        Linearisation::of(py, &found.ok_or_else(|| Stop::BudgetSpent.raised())?, x.len())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<driftless.Oracle {} variables, budget {}>", self.dimension_of(), self.0.budget)
+    }
+}
+
+impl Oracle {
+    /// Whether there are derivatives of a kind. To ask for others is a mistake of the solver and no end of the search.
+    fn check(&self, kind: usize) -> PyResult<()> {
+        if self.0.has[kind] { Ok(()) } else { Err(Stop::NoDerivatives.raised()) }
+    }
+}

@@ -1,0 +1,322 @@
+//! Problems that Python asks.
+
+use std::sync::Arc;
+
+use driftless::experiment::Subject;
+use driftless::reorientation::TaskSubject;
+use driftless::search::{Evaluation, Oracle, Points, Shape, Stop, Watch};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::arrays;
+use crate::errors::{self, OrRaise as _, Raised as _};
+use crate::motion::Motion;
+
+/// Points of a batch between two looks for Ctrl-C.
+const CHUNK: usize = 16_384;
+
+/// Where a problem comes from, for `pickle`.
+#[derive(Clone)]
+pub(crate) enum Origin {
+    /// A task's document and a formulation.
+    Task { path: String, text: String },
+    /// An experiment's document and the number of an instance.
+    Experiment { path: String, text: String, instance: usize },
+}
+
+/// A cost to minimise in a box.
+#[pyclass(module = "driftless", frozen)]
+pub(crate) struct Problem {
+    asked: Arc<dyn driftless::search::Problem>,
+    pub(crate) subject: Arc<dyn Subject>,
+    pub(crate) space: String,
+    label: String,
+    origin: Origin,
+}
+
+impl Problem {
+    pub(crate) fn new(
+        subject: Arc<dyn Subject>,
+        space: &str,
+        label: &str,
+        origin: Origin,
+    ) -> PyResult<Self> {
+        let spaces = subject.spaces();
+        let space =
+            if space.is_empty() { spaces.first().map_or("", String::as_str) } else { space };
+        if !(spaces.is_empty() && space.is_empty() || spaces.iter().any(|own| own == space)) {
+            let expected = if spaces.is_empty() {
+                "none, since it has but one".to_owned()
+            } else {
+                format!("one of {}", spaces.join(", "))
+            };
+            return Err(errors::usage(&format!(
+                "found formulation {space:?}, expected {expected}"
+            )));
+        }
+        let asked = subject.problem(space).or_raise()?;
+        let (space, label) = (space.to_owned(), label.to_owned());
+        Ok(Self { asked, subject, space, label, origin })
+    }
+
+    fn dimension(&self) -> usize {
+        self.asked.bounds().len()
+    }
+
+    fn at(&self, x: &Bound<'_, PyAny>) -> PyResult<Evaluation> {
+        let mut x = arrays::point(x, self.dimension())?;
+        if !self.asked.bounds().snap(&mut x) {
+            return Ok(Evaluation::new(f64::INFINITY, f64::INFINITY));
+        }
+        self.asked.evaluate(&x).or_raise()
+    }
+
+    fn at_all(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Vec<Evaluation>> {
+        let points = arrays::points(x, self.dimension())?;
+        let (mut found, watch) = (Vec::with_capacity(points.len()), Watch::default());
+        let mut begin = 0;
+        while begin < points.len() {
+            let count = CHUNK.min(points.len() - begin);
+            let part =
+                if count == points.len() { points.clone() } else { cut(&points, begin, count) };
+            py.detach(|| {
+                let mut oracle = Oracle::new(&*self.asked, count as u64, &watch);
+                oracle.evaluate_anywhere(part, &mut found).1
+            })
+            .or_raise()?;
+            begin += count;
+            py.check_signals()?;
+        }
+        Ok(found)
+    }
+
+    /// A point within the box, where alone there are derivatives.
+    fn inside(&self, x: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+        inside(self.asked.bounds(), x)
+    }
+}
+
+/// A point within a box.
+pub(crate) fn inside(
+    bounds: &driftless::search::Bounds,
+    x: &Bound<'_, PyAny>,
+) -> PyResult<Vec<f64>> {
+    let mut x = arrays::point(x, bounds.len())?;
+    if bounds.snap(&mut x) {
+        return Ok(x);
+    }
+    let places = bounds.iter().zip(&x).enumerate();
+    let mut outside = places.filter(|(_, ([lower, upper], x))| !(lower..=upper).contains(x));
+    let told = outside.next().map(|(k, ([lower, upper], x))| {
+        format!("found x[{k}] = {x}, expected {lower} to {upper}: there are derivatives within the box alone")
+    });
+    Err(pyo3::exceptions::PyValueError::new_err(told.unwrap_or_default()))
+}
+
+fn cut(points: &Points, begin: usize, count: usize) -> Points {
+    let mut part = Points::zeros(points.dimension(), count);
+    (0..count).for_each(|i| part[i].copy_from_slice(&points[begin + i]));
+    part
+}
+
+/// Costs and violations.
+pub(crate) type Pair = (Py<PyArray1<f64>>, Py<PyArray1<f64>>);
+
+/// Costs and violations of some points as arrays.
+pub(crate) fn both(py: Python<'_>, found: &[Evaluation]) -> Pair {
+    let costs = found.iter().map(|found| found.cost).collect();
+    let violations = found.iter().map(|found| found.violation).collect();
+    (arrays::vector(py, costs).unbind(), arrays::vector(py, violations).unbind())
+}
+
+#[pymethods]
+impl Problem {
+    #[getter]
+    fn name(&self) -> &str {
+        self.subject.name()
+    }
+
+    #[getter]
+    fn label(&self) -> &str {
+        &self.label
+    }
+
+    #[getter]
+    fn formulation(&self) -> Option<&str> {
+        Some(&*self.space).filter(|space| !space.is_empty())
+    }
+
+    #[getter(dimension)]
+    fn get_dimension(&self) -> usize {
+        self.dimension()
+    }
+
+    #[getter]
+    fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        arrays::walls(py, self.asked.bounds(), 0)
+    }
+
+    #[getter]
+    fn upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        arrays::walls(py, self.asked.bounds(), 1)
+    }
+
+    #[getter]
+    fn best_known(&self) -> Option<f64> {
+        self.subject.known_cost()
+    }
+
+    #[getter]
+    fn has_subgradient(&self) -> bool {
+        self.asked.slopes().is_some()
+    }
+
+    #[getter]
+    fn has_linearise(&self) -> bool {
+        self.asked.composite().is_some()
+    }
+
+    fn __call__(&self, x: &Bound<'_, PyAny>) -> PyResult<f64> {
+        Ok(self.at(x)?.cost)
+    }
+
+    fn violation(&self, x: &Bound<'_, PyAny>) -> PyResult<f64> {
+        Ok(self.at(x)?.violation)
+    }
+
+    fn evaluate(&self, x: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+        let found = self.at(x)?;
+        Ok((found.cost, found.violation))
+    }
+
+    fn batch<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let found = self.at_all(py, x)?;
+        Ok(arrays::vector(py, found.into_iter().map(|found| found.cost).collect()))
+    }
+
+    fn evaluate_batch(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Pair> {
+        Ok(both(py, &self.at_all(py, x)?))
+    }
+
+    fn subgradient<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<'py, PyAny>,
+    ) -> PyResult<(f64, Bound<'py, PyArray1<f64>>)> {
+        let x = self.inside(x)?;
+        let slopes = self.asked.slopes().ok_or_else(|| Stop::NoDerivatives.raised())?;
+        let found = slopes.at(&x).or_raise()?;
+        Ok((found.evaluation.cost, arrays::vector(py, found.slopes.as_slice().to_vec())))
+    }
+
+    fn linearise(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Linearisation> {
+        let x = self.inside(x)?;
+        let composite = self.asked.composite().ok_or_else(|| Stop::NoDerivatives.raised())?;
+        let found = composite.linearise(&x).or_raise()?;
+        Linearisation::of(py, &found, x.len())
+    }
+
+    fn motion(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+        let x = arrays::point(x, self.dimension())?;
+        let any = self.subject.as_any().and_then(|any| any.downcast_ref::<TaskSubject>());
+        let task = any
+            .ok_or_else(|| errors::usage("the problem is no task, so its points are no motions"))?;
+        let coefficients = task.coefficients(&self.space, &x).unwrap_or_default();
+        let duration = (self.space != "time-free").then(|| x.last().copied()).flatten();
+        let source = match &self.origin {
+            Origin::Task { path, text } => Some((path.clone(), text.clone())),
+            Origin::Experiment { .. } => None,
+        };
+        Motion::assessed(task.reorientation().shared(), coefficients, duration, source).shown(py)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let restore = py.import("driftless._restore")?;
+        match &self.origin {
+            Origin::Task { path, text } => {
+                let arguments = (path, text, &self.space);
+                (restore.getattr("task_problem")?, arguments).into_pyobject(py)
+            }
+            Origin::Experiment { path, text, instance } => {
+                let arguments = (path, text, instance, &self.space);
+                (restore.getattr("experiment_problem")?, arguments).into_pyobject(py)
+            }
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        let label = if self.label.is_empty() { self.subject.name() } else { &*self.label };
+        let formulation = self.formulation().map_or_else(String::new, |own| format!(", {own}"));
+        format!("<driftless.Problem {label}{formulation}, {} variables>", self.dimension())
+    }
+}
+
+/// Values and slopes of the smooth pieces of a cost at a point.
+#[pyclass(module = "driftless", frozen, get_all)]
+pub(crate) struct Linearisation {
+    cost: f64,
+    terms: Vec<Py<Term>>,
+}
+
+/// One term of a cost.
+#[pyclass(module = "driftless", frozen, get_all)]
+pub(crate) struct Term {
+    weight: f64,
+    shape: &'static str,
+    floor: f64,
+    tracks: Vec<u64>,
+    places: Py<PyArray1<f64>>,
+    values: Py<PyArray1<f64>>,
+    gradients: Py<PyArray2<f64>>,
+}
+
+impl Linearisation {
+    pub(crate) fn of(
+        py: Python<'_>,
+        found: &driftless::search::Linearisation,
+        dimension: usize,
+    ) -> PyResult<Self> {
+        let terms = found.terms.iter().map(|term| Py::new(py, Term::of(py, term, dimension)?));
+        Ok(Self { cost: found.cost(), terms: terms.collect::<PyResult<_>>()? })
+    }
+}
+
+impl Term {
+    fn of(py: Python<'_>, term: &driftless::search::Term, dimension: usize) -> PyResult<Self> {
+        let shape = match term.shape {
+            Shape::Norm => "norm",
+            Shape::Max => "max",
+            Shape::Hinge => "hinge",
+        };
+        let pieces = || term.pieces.iter();
+        let gradients = pieces().flat_map(|piece| piece.gradient.iter().copied()).collect();
+        Ok(Self {
+            weight: term.weight,
+            shape,
+            floor: term.floor,
+            tracks: pieces().map(|piece| piece.id.track).collect(),
+            places: arrays::vector(py, pieces().map(|piece| piece.id.place).collect()).unbind(),
+            values: arrays::vector(py, pieces().map(|piece| piece.value).collect()).unbind(),
+            gradients: arrays::matrix(py, term.pieces.len(), dimension, gradients)?.unbind(),
+        })
+    }
+}
+
+#[pymethods]
+impl Linearisation {
+    fn __repr__(&self) -> String {
+        format!("<driftless.Linearisation cost {}, {} terms>", self.cost, self.terms.len())
+    }
+}
+
+#[pymethods]
+impl Term {
+    fn __repr__(&self) -> String {
+        format!("<driftless.Term {} × {} of {} pieces>", self.weight, self.shape, self.tracks.len())
+    }
+}

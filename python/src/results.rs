@@ -1,0 +1,138 @@
+//! Folders of results.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use driftless::exhibit::Table;
+use driftless::experiment::{Folder, standing};
+use driftless::registry;
+use driftless::reorientation::TaskSubject;
+use driftless::report::{self, Target};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::errors::{self, OrRaise as _};
+use crate::motion::Motion;
+
+/// A folder of results as it was when it was opened.
+#[pyclass(module = "driftless._driftless", frozen)]
+pub(crate) struct Results {
+    folder: Folder,
+    tables: OnceLock<Vec<Table>>,
+}
+
+impl Results {
+    pub(crate) fn new(folder: Folder) -> Self {
+        Self { folder, tables: OnceLock::new() }
+    }
+
+    fn tables(&self, py: Python<'_>) -> PyResult<&[Table]> {
+        if let Some(tables) = self.tables.get() {
+            return Ok(tables);
+        }
+        let folder = &self.folder;
+        let tables = py.detach(|| report::tables(&folder.plan, &[&folder.store]));
+        let tables = tables.or_raise()?;
+        Ok(self.tables.get_or_init(|| tables))
+    }
+}
+
+#[pymethods]
+impl Results {
+    #[staticmethod]
+    fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let folder = py.detach(|| Folder::open(&path, &registry()));
+        Ok(Self::new(folder.or_raise()?))
+    }
+
+    #[getter]
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.folder.plan.name
+    }
+
+    #[getter]
+    fn instances(&self) -> Vec<&str> {
+        self.folder.plan.instances.iter().map(|instance| &*instance.label).collect()
+    }
+
+    #[getter]
+    fn optimisers(&self) -> Vec<&str> {
+        self.folder.plan.optimisers.iter().map(|entrant| &*entrant.label).collect()
+    }
+
+    /// Planned, stored and failed runs.
+    #[getter]
+    fn counts(&self, py: Python<'_>) -> PyResult<[usize; 3]> {
+        let planned = self.folder.plan.runs.len();
+        let found = py.detach(|| standing(&self.folder.plan, &self.folder.store));
+        let failed = found.or_raise()?.failures.len();
+        let missing = self.folder.missing(None).or_raise()?.len();
+        Ok([planned, planned - missing, failed])
+    }
+
+    fn captions(&self, py: Python<'_>) -> PyResult<BTreeMap<String, String>> {
+        let tables = self.tables(py)?.iter();
+        Ok(tables.map(|table| (table.name().to_owned(), table.caption().to_owned())).collect())
+    }
+
+    fn names(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        Ok(self.tables(py)?.iter().map(|table| table.name().to_owned()).collect())
+    }
+
+    /// A table as a Parquet file.
+    fn table<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyBytes>>> {
+        let Some(table) = self.tables(py)?.iter().find(|table| table.name() == name) else {
+            return Ok(None);
+        };
+        let bytes = py.detach(|| table.parquet()).map_err(errors::results)?;
+        Ok(Some(PyBytes::new(py, &bytes)))
+    }
+
+    fn report<'py>(
+        &self,
+        py: Python<'py>,
+        out: Option<PathBuf>,
+        replace: bool,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let folder = &self.folder;
+        let report = py.detach(|| {
+            let results = folder.path();
+            let mut target = Target::of_all(vec![results], out.as_deref().unwrap_or(results));
+            if replace {
+                target = target.replacing();
+            }
+            report::write(&folder.plan, &folder.store, &target)
+        });
+        let report = report.or_raise()?;
+        let dict = PyDict::new(py);
+        dict.set_item("page", &report.page)?;
+        dict.set_item("summary", &report.summary)?;
+        dict.set_item("kept", report.kept)?;
+        let findings = report.findings.iter().map(|f| (f.question.clone(), f.answer.clone()));
+        dict.set_item("findings", findings.collect::<Vec<_>>())?;
+        Ok(dict)
+    }
+
+    /// The best motion of an instance that is a task.
+    fn motion(&self, py: Python<'_>, instance: &str) -> PyResult<Option<Py<PyAny>>> {
+        let plan = &self.folder.plan;
+        let runs = py.detach(|| driftless::experiment::load(plan, &self.folder.store));
+        let runs = runs.or_raise()?;
+        let results = plan.results(&runs);
+        let best = results.best_runs_with_points().into_iter();
+        let of = |run: &&driftless::experiment::Run| results.instance(run).label == instance;
+        let Some(run) = best.into_iter().find(of) else { return Ok(None) };
+        let Some(task) = TaskSubject::of(results.instance(run)) else { return Ok(None) };
+        let space = results.space(run);
+        let Some(coefficients) = task.coefficients(&space, &run.x) else { return Ok(None) };
+        let duration = (space != "time-free").then(|| run.x.last().copied()).flatten();
+        let problem = task.reorientation().shared();
+        Motion::assessed(problem, coefficients, duration, None).shown(py).map(Some)
+    }
+}
