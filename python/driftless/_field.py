@@ -66,7 +66,8 @@ class Optimiser:
             raise ValueError(f'found isolation {self.isolation!r}, expected "thread" or "process"')
         if self.formulation not in (None, "time-free", "scaled", "raw"):
             raise ValueError(f'found formulation {self.formulation!r}, expected "time-free", "scaled" or "raw"')
-        unknown = set(self.settings) - set(_keywords(self.function)) if _keywords(self.function) is not None else set()
+        known = _keywords(self.function)
+        unknown = set[str]() if known is None else set(self.settings) - set(known)
         if unknown:
             raise TypeError(f"{self.name} has no setting {', '.join(sorted(unknown))}")
 
@@ -159,7 +160,7 @@ def optimiser(
     """
 
     def decorate(function: _Solver) -> Optimiser:
-        own = name if isinstance(name, str) else getattr(function, "__name__", "optimiser")
+        own = name if isinstance(name, str) else str(getattr(function, "__name__", "optimiser"))
         return Optimiser(
             own,
             function,
@@ -287,7 +288,7 @@ def problem(
     low, up = np.broadcast_to(low, shape).copy(), np.broadcast_to(up, shape).copy()
 
     def decorate(function: _Cost) -> Function:
-        own = name or getattr(function, "__name__", "problem")
+        own = name or str(getattr(function, "__name__", "problem"))
         return Function(own, function, low, up, batched, least_cost, tuple(map(float, targets)), version)
 
     return decorate

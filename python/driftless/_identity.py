@@ -17,9 +17,10 @@ _SIMPLE = (int, float, complex, str, bytes, bool, type(None))
 
 
 def digest(function: Callable[..., Any]) -> str:
-    """A digest of a function's source, and of what it uses of its own module: functions, classes and plain values, at any depth.
+    """A digest of a function's source, and of what it uses of its own module: functions, classes, numbers, texts, tuples and arrays, at
+    any depth.
 
-    What it uses of other modules does not count.
+    Lists and dicts, which functions may write to, do not count, nor does what it uses of other modules.
     """
     hashed, seen = hashlib.sha256(), set[int]()
     _add(function, getattr(function, "__module__", None), hashed, seen)
@@ -31,12 +32,8 @@ def _add(thing: Any, module: str | None, hashed: Any, seen: set[int]) -> None:
         hashed.update(f"{thing!r}\n".encode())
     elif isinstance(thing, np.ndarray):
         hashed.update(f"{thing.dtype} {thing.shape}".encode() + thing.tobytes())
-    elif isinstance(thing, (list, tuple)):
+    elif isinstance(thing, tuple):
         for part in thing:
-            _add(part, module, hashed, seen)
-    elif isinstance(thing, dict):
-        for key, part in thing.items():
-            _add(key, module, hashed, seen)
             _add(part, module, hashed, seen)
     elif (callable(thing) or inspect.isclass(thing)) and getattr(thing, "__module__", None) == module:
         if id(thing) in seen:

@@ -63,7 +63,7 @@ def plan(
     >>> import driftless
     >>> motion = driftless.plan(optimiser="nelder-mead", budget=2000)
     >>> motion.joints[0], motion.sample(0.1).angle.shape[1]
-    ('joint 1', 6)
+    ('joint1', 6)
     """
     if task is None:
         task = Task()
@@ -77,5 +77,5 @@ def plan(
         bar.end()
     motion = Motion(core)
     if motion.remark is not None:
-        _log.warning("%s", motion.remark)
+        _log.log(logging.WARNING if core.is_warned_of else logging.INFO, "%s", motion.remark)
     return motion

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from importlib import import_module
 from typing import Any
 
 __all__ = ["Progress"]
@@ -23,9 +24,9 @@ class Progress:
         if not self._shown or total == 0:
             return
         try:
-            from tqdm.auto import tqdm
+            tqdm: Any = import_module("tqdm.auto").tqdm
         except ImportError:
-            self._line = sys.stderr is not None and sys.stderr.isatty()
+            self._line = sys.stderr.isatty()
         else:
             # Without a terminal or a notebook it draws nothing.
             self._bar = tqdm(total=total, desc=self._what, unit="eval", unit_scale=True, leave=False, disable=None)

@@ -35,8 +35,10 @@ def functions(
     Examples
     --------
     >>> import driftless
-    >>> driftless.functions(["sphere", "ackley"], dimension=5)
-    [<driftless.Problem sphere dimension=5, 5 variables>, <driftless.Problem ackley dimension=5, 5 variables>]
+    >>> for problem in driftless.functions(["sphere", "ackley"], dimension=5):
+    ...     problem
+    <driftless.Problem sphere dimension=5 instance=1, 5 variables>
+    <driftless.Problem ackley dimension=5 instance=1, 5 variables>
     """
     names = [name] if isinstance(name, str) else list(name)
     dimensions = [dimension] if isinstance(dimension, int) else list(dimension)

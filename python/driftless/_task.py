@@ -26,7 +26,7 @@ class Task:
 
     Parameters
     ----------
-    robot : str, optional
+    robot : str or path-like, optional
         A robot that comes with the package, or a file.
     start_joints_deg, goal_joints_deg : sequence of float, shape (joints,), optional
         Joint angles at the start and at the goal [°].
@@ -62,7 +62,7 @@ class Task:
     def __init__(
         self,
         *,
-        robot: str | None = None,
+        robot: str | os.PathLike[str] | None = None,
         start_joints_deg: Sequence[float] | None = None,
         start_base_zyx_deg: Sequence[float] | None = None,
         goal_joints_deg: Sequence[float] | None = None,
@@ -77,6 +77,8 @@ class Task:
         pieces: int | None = None,
         degree: int | None = None,
     ) -> None:
+        if robot is not None:
+            robot = os.path.abspath(robot) if os.path.exists(robot) else os.fspath(robot)
         text = document(
             {
                 "task.robot": robot,
@@ -95,7 +97,7 @@ class Task:
                 "trajectory.degree": degree,
             }
         )
-        self._core, self._home = _driftless.Task("Task", text), os.path.abspath("Task")
+        self._core, self._home = _driftless.Task("Task", text), "Task"
 
     @classmethod
     def _of(cls, core: _driftless.Task) -> Task:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib.metadata import version
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,14 @@ __all__ = ["cma", "ioh_problem", "minionpy", "nevergrad", "pygmo_problem", "scip
 
 
 def _adapted(name: str, package: str, function: Callable[..., object], **settings: Any) -> Optimiser:
-    return Optimiser(name, function, settings, version=f"{package} {version(package)}")
+    try:
+        return Optimiser(name, function, settings, version=f"{package} {version(package)}")
+    except PackageNotFoundError:
+        raise ImportError(f"{name} needs the package {package}: pip install {package}") from None
+
+
+def _module(name: str) -> Any:
+    return import_module(name)
 
 
 def scipy(method: str = "COBYQA", **options: Any) -> Optimiser:
@@ -34,8 +42,7 @@ def scipy(method: str = "COBYQA", **options: Any) -> Optimiser:
 
 
 def _scipy(oracle: Oracle, rng: np.random.Generator, *, method: str, **options: Any) -> None:
-    from scipy.optimize import Bounds, minimize
-
+    scipy = _module("scipy.optimize")
     has_slopes = oracle.has_subgradient and method in ("SLSQP", "L-BFGS-B", "TNC", "trust-constr", "CG", "BFGS")
     low, width = oracle.lower, oracle.upper - oracle.lower
 
@@ -50,7 +57,7 @@ def _scipy(oracle: Oracle, rng: np.random.Generator, *, method: str, **options: 
     options = {limit: oracle.budget, **options}
     while True:
         x = rng.random(oracle.dimension)
-        minimize(cost, x, method=method, jac=has_slopes, bounds=Bounds(0, 1), options=options)
+        scipy.minimize(cost, x, method=method, jac=has_slopes, bounds=scipy.Bounds(0, 1), options=options)
 
 
 def cma(sigma: float = 0.3, **options: Any) -> Optimiser:
@@ -67,12 +74,11 @@ def cma(sigma: float = 0.3, **options: Any) -> Optimiser:
 
 
 def _cma(oracle: Oracle, rng: np.random.Generator, *, sigma: float, **options: Any) -> None:
-    from cma import CMAEvolutionStrategy
-
+    cma = _module("cma")
     low, width, size = oracle.lower, oracle.upper - oracle.lower, 4 + int(3 * np.log(oracle.dimension))
     while True:
         own = {"bounds": [0, 1], "seed": int(rng.integers(1, 2**31)), "popsize": size, "verbose": -9}
-        search = CMAEvolutionStrategy(rng.random(oracle.dimension), sigma, {**own, **options})
+        search = cma.CMAEvolutionStrategy(rng.random(oracle.dimension), sigma, {**own, **options})
         while not search.stop():
             points = search.ask()
             search.tell(points, oracle.batch(low + width * np.asarray(points)).tolist())
@@ -93,11 +99,13 @@ def minionpy(algorithm: str = "jSO", **options: Any) -> Optimiser:
 
 
 def _minionpy(oracle: Oracle, rng: np.random.Generator, *, algorithm: str, **options: Any) -> None:
-    from minionpy import Minimizer
-
     box = list(zip(oracle.lower.tolist(), oracle.upper.tolist()))
+
+    def costs(points: Any, *_: Any) -> Any:
+        return oracle.batch(points).tolist()
+
     own = {"algo": algorithm, "maxevals": oracle.budget, "seed": int(rng.integers(2**31))}
-    Minimizer(lambda points, *_: oracle.batch(points).tolist(), box, **own, options=options or None).optimize()
+    _module("minionpy").Minimizer(costs, box, **own, options=options or None).optimize()
 
 
 def nevergrad(optimizer: str = "NGOpt") -> Optimiser:
@@ -112,8 +120,7 @@ def nevergrad(optimizer: str = "NGOpt") -> Optimiser:
 
 
 def _nevergrad(oracle: Oracle, rng: np.random.Generator, *, optimizer: str) -> None:
-    import nevergrad as ng
-
+    ng = _module("nevergrad")
     low, width = oracle.lower, oracle.upper - oracle.lower
     space = ng.p.Array(shape=low.shape, lower=0, upper=1)
     space.random_state.seed(int(rng.integers(2**32)))
@@ -130,11 +137,8 @@ def ioh_problem(problem: Problem) -> Any:
     -------
     ioh.problem.RealSingleObjective
     """
-    import ioh
-
-    found = ioh.wrap_problem(
-        lambda x: problem(x), problem.name, ioh.ProblemClass.REAL, problem.dimension, lb=0, ub=0
-    )
+    ioh = _module("ioh")
+    found = ioh.wrap_problem(problem.__call__, problem.name, ioh.ProblemClass.REAL, problem.dimension)
     found.bounds.lb, found.bounds.ub = problem.lower.tolist(), problem.upper.tolist()
     return found
 
@@ -165,6 +169,4 @@ def pygmo_problem(problem: Problem) -> Any:
     -------
     pygmo.problem
     """
-    import pygmo
-
-    return pygmo.problem(_Pygmo(problem))
+    return _module("pygmo").problem(_Pygmo(problem))

@@ -40,7 +40,7 @@ class _Oracle:
         self.seed: int = opening["seed"]
         self.settings: dict[str, Any] = opening["settings"]
         self.budget: int = opening["budget"]
-        self.remaining = self.budget
+        self.remaining: int = self.budget
         self.best: tuple[_Array, float] | None = None
 
     @property

@@ -51,7 +51,7 @@ pub(crate) fn point(x: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Vec<f64>
         return Err(wrong_shape("a point", array.as_any(), &expected));
     }
     let array: PyReadonlyArray1<'_, f64> = array.try_readonly()?;
-    Ok(array.as_slice().map_or_else(|_| array.as_array().to_vec(), <[f64]>::to_vec))
+    Ok(array.as_array().to_vec())
 }
 
 /// Many points, one per row.
@@ -68,17 +68,8 @@ pub(crate) fn points(x: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Points>
     }
     let array: PyReadonlyArray2<'_, f64> = array.try_readonly()?;
     let mut points = Points::zeros(dimension, array.shape()[0]);
-    match array.as_slice() {
-        Ok(all) => {
-            for (point, row) in points.iter_mut().zip(all.chunks_exact(dimension)) {
-                point.copy_from_slice(row);
-            }
-        }
-        Err(_) => {
-            for (point, row) in points.iter_mut().zip(array.as_array().outer_iter()) {
-                point.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
-            }
-        }
+    for (point, row) in points.iter_mut().zip(array.as_array().outer_iter()) {
+        point.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
     }
     Ok(points)
 }

@@ -13,7 +13,7 @@ use driftless::search::{Bounds, Watch};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::errors::OrRaise as _;
+use crate::errors::{self, OrRaise as _};
 use crate::problem::{Origin, Problem};
 use crate::results::Results;
 use crate::solver::{PythonOptimiser, PythonProblem};
@@ -231,6 +231,9 @@ impl Experiment {
             self.experiment.plan()
         });
         let plan = ready.or_raise()?;
+        if plan.optimisers.is_empty() {
+            return Err(errors::usage("found no optimiser, expected at least one"));
+        }
         let path = out.unwrap_or_else(|| Path::new("results").join(&plan.name));
         let folder = py.detach(|| {
             plan.check_possible(&path).or_raise()?;

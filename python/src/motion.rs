@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use driftless::reorientation::{
     AnyReorientation, Assessment, AssessmentJson, Excursions, ExcursionsJson, FoundBy, INTERVALS,
-    MotionFormat, Planned, Reach, ShapeJson, motion_scene, write_motion,
+    MotionFormat, Planned, Reach, Remark, ShapeJson, motion_scene, write_motion,
 };
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -30,7 +30,7 @@ pub(crate) struct Motion {
     assessment: Assessment,
     /// What `plan --json` prints.
     json: Value,
-    remark: Option<String>,
+    remark: Option<Remark>,
     interrupted: bool,
     /// Path and text of the task, where they are known.
     source: Option<(String, String)>,
@@ -40,7 +40,7 @@ impl Motion {
     pub(crate) fn planned(
         planned: Planned,
         json: Value,
-        remark: Option<String>,
+        remark: Option<Remark>,
         source: (String, String),
     ) -> Self {
         let fixed = planned.problem.certify(&planned.coefficients, None);
@@ -152,7 +152,15 @@ impl Motion {
 
     #[getter]
     fn remark(&self) -> Option<&str> {
-        self.remark.as_deref()
+        self.remark.as_ref().map(|remark| match remark {
+            Remark::Warning(text) | Remark::Note(text) => &**text,
+        })
+    }
+
+    /// Whether the remark is a warning.
+    #[getter]
+    fn is_warned_of(&self) -> bool {
+        matches!(self.remark, Some(Remark::Warning(_)))
     }
 
     #[getter]

@@ -187,7 +187,7 @@ pub(crate) fn plan(
         seed,
     });
     let json = serde_json::to_value(&json).unwrap_or_default();
-    let remark = found.remark(budget).map(|remark| remark.to_string());
+    let remark = found.remark(budget);
     let text = toml::to_string(planner.file());
     let text = text.map_err(|error| errors::usage(&error.to_string()))?;
     Ok(Motion::planned(found, json, remark, (task.path(), text)))
