@@ -72,6 +72,7 @@ class Problem:
         NoDerivatives
             The cost is no such sum.
         """
+    def _native_seconds(self, x: ArrayLike, is_batch: bool) -> float: ...
     def motion(self, x: ArrayLike) -> _Shown:
         """The motion that a point stands for, evaluated finely. Of tasks alone."""
     def __reduce__(self) -> tuple[Any, ...]: ...

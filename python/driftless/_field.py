@@ -66,8 +66,8 @@ class Optimiser:
             raise ValueError(f'found isolation {self.isolation!r}, expected "thread" or "process"')
         if self.formulation not in (None, "time-free", "scaled", "raw"):
             raise ValueError(f'found formulation {self.formulation!r}, expected "time-free", "scaled" or "raw"')
-        known = _keywords(self.function)
-        unknown = set[str]() if known is None else set(self.settings) - set(known)
+        keywords = _keywords(self.function)
+        unknown = set[str]() if keywords is None else set(self.settings) - set(keywords)
         if unknown:
             raise TypeError(f"{self.name} has no setting {', '.join(sorted(unknown))}")
 
@@ -91,7 +91,11 @@ class Optimiser:
 
     def all_settings(self) -> dict[str, Any]:
         """The settings, those that are left at their defaults included."""
-        return {**(_keywords(self.function) or {}), **self.settings}
+        settings = {**(_keywords(self.function) or {}), **self.settings}
+        missing = sorted(name for name, x in settings.items() if x is inspect.Parameter.empty)
+        if missing:
+            raise TypeError(f"{self.name} needs the setting {', '.join(missing)}")
+        return settings
 
     def identity(self) -> dict[str, Any]:
         """All that determines its runs beside formulation, seed and budget."""
@@ -104,11 +108,11 @@ class Optimiser:
 
 
 def _keywords(function: _Solver) -> dict[str, Any] | None:
-    """The keyword arguments of a function and their defaults; None where it takes any."""
+    """The keyword arguments of a function and their defaults, `Parameter.empty` where there is none; None where it takes any."""
     parameters = inspect.signature(function).parameters.values()
     if any(p.kind is p.VAR_KEYWORD for p in parameters):
         return None
-    return {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY and p.default is not p.empty}
+    return {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}
 
 
 def _plain(x: Any) -> Any:

@@ -53,7 +53,7 @@ def _scipy(oracle: Oracle, rng: np.random.Generator, *, method: str, **options: 
         found, slopes = oracle.subgradient(x)
         return found, width * slopes
 
-    limit = {"COBYQA": "maxfev", "COBYLA": "maxiter"}.get(method, "maxiter")
+    limit = {"COBYQA": "maxfev", "TNC": "maxfun"}.get(method, "maxiter")
     options = {limit: oracle.budget, **options}
     while True:
         x = rng.random(oracle.dimension)

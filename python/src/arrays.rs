@@ -68,8 +68,16 @@ pub(crate) fn points(x: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Points>
     }
     let array: PyReadonlyArray2<'_, f64> = array.try_readonly()?;
     let mut points = Points::zeros(dimension, array.shape()[0]);
-    for (point, row) in points.iter_mut().zip(array.as_array().outer_iter()) {
-        point.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
+    match array.as_slice().ok().filter(|_| array.is_c_contiguous()) {
+        Some(all) => {
+            let rows = all.chunks_exact(dimension);
+            points.iter_mut().zip(rows).for_each(|(point, row)| point.copy_from_slice(row));
+        }
+        None => {
+            for (point, row) in points.iter_mut().zip(array.as_array().outer_iter()) {
+                point.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
+            }
+        }
     }
     Ok(points)
 }

@@ -74,21 +74,26 @@ impl Problem {
 
     fn at_all(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Vec<Evaluation>> {
         let points = arrays::points(x, self.dimension())?;
-        let (mut found, watch) = (Vec::with_capacity(points.len()), Watch::default());
-        let mut begin = 0;
-        while begin < points.len() {
-            let count = CHUNK.min(points.len() - begin);
-            let part =
-                if count == points.len() { points.clone() } else { cut(&points, begin, count) };
-            py.detach(|| {
-                let mut oracle = Oracle::new(&*self.asked, count as u64, &watch);
-                oracle.evaluate_anywhere(part, &mut found).1
-            })
-            .or_raise()?;
-            begin += count;
+        let mut found = Vec::with_capacity(points.len());
+        if points.len() <= CHUNK {
+            py.detach(|| self.at_part(points, &mut found)).or_raise()?;
+            return Ok(found);
+        }
+        for begin in (0..points.len()).step_by(CHUNK) {
+            let part = cut(&points, begin, CHUNK.min(points.len() - begin));
+            py.detach(|| self.at_part(part, &mut found)).or_raise()?;
             py.check_signals()?;
         }
         Ok(found)
+    }
+
+    fn at_part(&self, mut points: Points, found: &mut Vec<Evaluation>) -> Result<(), Stop> {
+        let bounds = self.asked.bounds();
+        if points.iter_mut().all(|x| bounds.snap(x)) {
+            return Ok(self.asked.evaluate_batch(&points, &mut |one| found.push(one))?);
+        }
+        let watch = Watch::default();
+        Oracle::new(&*self.asked, points.len() as u64, &watch).evaluate_anywhere(points, found).1
     }
 
     /// A point within the box, where alone there are derivatives.
@@ -219,6 +224,31 @@ impl Problem {
         let composite = self.asked.composite().ok_or_else(|| Stop::NoDerivatives.raised())?;
         let found = composite.linearise(&x).or_raise()?;
         Linearisation::of(py, &found, x.len())
+    }
+
+    /// Seconds that the library takes for all points, one by one or as a batch, without Python: what benchmarks compare with.
+    fn _native_seconds(
+        &self,
+        py: Python<'_>,
+        x: &Bound<'_, PyAny>,
+        is_batch: bool,
+    ) -> PyResult<f64> {
+        let points = arrays::points(x, self.dimension())?;
+        py.detach(|| {
+            let mut sum = 0.0;
+            let clock = std::time::Instant::now();
+            if is_batch {
+                self.asked.evaluate_batch(&points, &mut |found| sum += found.cost)?;
+            } else {
+                for x in &points {
+                    sum += self.asked.evaluate(x)?.cost;
+                }
+            }
+            let seconds = clock.elapsed().as_secs_f64();
+            std::hint::black_box(sum);
+            Ok(seconds)
+        })
+        .map_err(|failure: driftless::search::Failure| failure.raised())
     }
 
     fn motion(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {

@@ -154,6 +154,14 @@ def test_two_settings_of_one_function(tmp_path: Path) -> None:
     with pytest.raises(TypeError, match="guess has no setting length"):
         guess.replace(length=3)
 
+    @driftless.optimiser
+    def needy(oracle: driftless.Oracle, rng: Rng, *, size: int) -> None:
+        oracle(oracle.lower)
+
+    with pytest.raises(TypeError, match="needy needs the setting size"):
+        race(needy, tmp_path)
+    assert race(needy.replace(size=3), tmp_path / "needy").stored == 1
+
 
 def test_labels_tell_problems_apart(tmp_path: Path) -> None:
     tasks = {"weak": driftless.Task(jerk_limit_deg_s3=40), "strong": driftless.Task(jerk_limit_deg_s3=80)}

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Builds the wheel, installs it into an environment of its own and tests it: pytest, mypy, pyright. Other versions of Python that
+# are found, 3.10 to 3.13, install the same wheel and run the tests that need no further packages. Needs Rust, a C compiler, Python 3.10
+# or later and PyPI.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+target=${CARGO_TARGET_DIR:-target}
+mkdir -p "$target/python"
+folder=$(cd "$target/python" && pwd)
+python=${PYTHON:-python3}
+
+quiet=(--quiet --disable-pip-version-check)
+[ -x "$folder/venv/bin/python" ] || "$python" -m venv "$folder/venv"
+rm -rf "$folder/wheels"
+"$folder/venv/bin/python" -m pip wheel "${quiet[@]}" --no-deps --wheel-dir "$folder/wheels" ./python
+wheel=$(echo "$folder"/wheels/driftless-*.whl)
+"$folder/venv/bin/python" -m pip install "${quiet[@]}" --force-reinstall --no-deps "$wheel"
+"$folder/venv/bin/python" -m pip install "${quiet[@]}" "$wheel[test]"
+
+# The command without Python, which results are compared with.
+cargo build --release --locked
+DRIFTLESS=$(cd "$target/release" && pwd)/driftless
+export DRIFTLESS OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=agg
+
+# The tests are of what is installed, not of what stands beside them.
+cp -r python/tests python/pyproject.toml docs/python.md "$folder/"
+cd "$folder"
+venv/bin/python -m pytest --quiet tests python.md --pyargs driftless
+venv/bin/python -m mypy -p driftless
+venv/bin/python -m pyright --pythonpath venv/bin/python "$(venv/bin/python -c 'import driftless, os; print(os.path.dirname(driftless.__file__))')"
+
+own=$(venv/bin/python -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+for version in 3.10 3.11 3.12 3.13; do
+    [ "$version" = "$own" ] && continue
+    found=$(command -v "python$version" || ls "${PYENV_ROOT:-$HOME/.pyenv}"/versions/"$version".*/bin/python3 2> /dev/null | tail -n 1 || true)
+    if [ -z "$found" ] || ! "$found" -c 'import venv, ensurepip' 2> /dev/null; then
+        echo "skipped: there is no Python $version"
+        continue
+    fi
+    echo "-- Python $version"
+    [ -x "venv-$version/bin/python" ] || "$found" -m venv "venv-$version"
+    "venv-$version/bin/python" -m pip install "${quiet[@]}" --force-reinstall --no-deps "$wheel"
+    "venv-$version/bin/python" -m pip install "${quiet[@]}" "$wheel[plot,pandas]" pytest
+    "venv-$version/bin/python" -m pytest --quiet tests --ignore tests/test_adapters.py
+done
