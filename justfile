@@ -46,6 +46,10 @@ page:
 figures:
     tests/figures/run.sh
 
+# the Python package on every version of Python that is found
+python:
+    python/test.sh
+
 # the notebooks, executed on copies; needs Python 3.11
 notebooks:
     notebooks/run.sh --check
