@@ -58,6 +58,9 @@ fn count(number: u64, what: &str) -> PyResult<NonZeroU64> {
 /// A run that has ended: optimiser, instance, seed, what was found, and what was wrong.
 type Line = (String, String, u64, String, String);
 
+/// Most runs at a time, as for the command.
+const MOST_JOBS: usize = 1024;
+
 /// What is told of runs while they are done.
 #[derive(Default)]
 struct Told(Mutex<Vec<Line>>);
@@ -226,6 +229,10 @@ impl Experiment {
         begin: &Bound<'_, PyAny>,
         tick: &Bound<'_, PyAny>,
     ) -> PyResult<Results> {
+        if let Some(jobs) = jobs.filter(|jobs| !(1..=MOST_JOBS).contains(jobs)) {
+            let message = format!("found jobs = {jobs}, expected 1 to {MOST_JOBS}");
+            return Err(pyo3::exceptions::PyValueError::new_err(message));
+        }
         let ready = py.detach(|| {
             self.experiment.ask_programs()?;
             self.experiment.plan()

@@ -715,6 +715,9 @@ def test_experiments_that_cannot_be_run(tmp_path: Path) -> None:
         driftless.run(problems=bowl, optimisers="cma", out=tmp_path)
     with pytest.raises(ValueError, match="found seeds = 0, expected 1 or more"):
         race(guess, tmp_path, seeds=0)
+    for jobs in (0, 1025):
+        with pytest.raises(ValueError, match=f"found jobs = {jobs}, expected 1 to 1024"):
+            race(guess, tmp_path, jobs=jobs)
     with pytest.raises(driftless.ResultsError, match="found no experiment.toml in"):
         driftless.open_results(tmp_path / "none")
 
