@@ -1,4 +1,4 @@
-"""What a question costs: from Python, in numpy, and without Python.
+"""What a question costs: without Python, from Python, and worked out in numpy.
 
     python python/benchmarks/calls.py
 """
@@ -10,60 +10,54 @@ import time
 from collections.abc import Callable
 
 import numpy as np
+from task_in_numpy import Task
 
 import driftless
 
 ROUNDS = 15
-
-
-def best(work: Callable[[], object], calls: int) -> float:
-    """Median over rounds of the microseconds of one of so many calls."""
-    times = []
-    for _ in range(ROUNDS):
-        began = time.perf_counter()
-        for _ in range(calls):
-            work()
-        times.append((time.perf_counter() - began) / calls)
-    return 1e6 * statistics.median(times)
-
-
-def in_numpy(x: np.ndarray) -> np.ndarray:
-    """Ackley's function of the rows of x, as the library has it but for shift and rotation, which stand for those here."""
-    y = (x - SHIFT) @ ROTATION
-    n = y.shape[-1]
-    radius = np.sqrt((y * y).sum(axis=-1) / n)
-    waves = np.cos(2 * np.pi * y).sum(axis=-1) / n
-    return -20 * np.exp(-0.2 * radius) - np.exp(waves) + 20 + np.e
-
+POINTS = 4096
 
 rng = np.random.default_rng(1)
 SHIFT = rng.uniform(-1, 1, 12)
 ROTATION = np.linalg.qr(rng.normal(size=(12, 12)))[0]
 
-print("| microseconds per point | alone | batch of 64 | batch of 4096 |")
+
+def ackley(x: np.ndarray) -> np.ndarray:
+    """Ackley's function of the rows of x; shift and rotation are others than the library's, and as dear."""
+    y = (x - SHIFT) @ ROTATION
+    radius = np.sqrt((y * y).mean(axis=-1))
+    waves = np.cos(2 * np.pi * y).mean(axis=-1)
+    return -20 * np.exp(-0.2 * radius) - np.exp(waves) + 20 + np.e
+
+
+def median(work: Callable[[], object], points: int, rounds: int = ROUNDS) -> float:
+    """Median over rounds of the microseconds per point."""
+    times = []
+    for _ in range(rounds):
+        began = time.perf_counter()
+        work()
+        times.append((time.perf_counter() - began) / points)
+    return 1e6 * statistics.median(times)
+
+
+def each(ask: Callable[[np.ndarray], object], parts: list[np.ndarray]) -> None:
+    for part in parts:
+        ask(part)
+
+
+print("| microseconds per point | alone | batches of 64 | batch of 4096 |")
 print("|---|---|---|---|")
-for name, problem in {"default task": driftless.Task().problem(), "ackley": driftless.functions("ackley", dimension=12)[0]}.items():
-    x = rng.uniform(problem.lower, problem.upper, (4096, problem.dimension))
-    rows = {"native": [], "Python": [], "numpy": []}
-    for count in (1, 64, 4096):
-        points = x[:count]
-        calls = max(1, 4096 // count)
-        native = statistics.median(problem._native_seconds(x if count == 1 else points, count > 1) for _ in range(ROUNDS))
-        rows["native"].append(1e6 * native / (4096 if count == 1 else count))
-        cycle = iter(())
-
-        def one() -> float:
-            global cycle
-            row = next(cycle, None)
-            if row is None:
-                cycle = iter(list(x))
-                row = next(cycle)
-            return problem(row)
-
-        ask = one if count == 1 else (lambda: problem.batch(points))
-        rows["Python"].append(best(ask, calls) / count)
-        if name == "ackley":
-            rows["numpy"].append(best(lambda: in_numpy(points), calls) / count)
-    for kind, times in rows.items():
-        if times:
-            print(f"| {name}, {kind} | " + " | ".join(f"{t:.3g}" for t in times) + " |")
+for problem, in_numpy in ((driftless.Task().problem(), Task().cost), (driftless.functions("ackley", dimension=12)[0], ackley)):
+    x = rng.uniform(problem.lower, problem.upper, (POINTS, problem.dimension))
+    native, python, numpy = [], [], []
+    for size in (1, 64, POINTS):
+        parts = list(x) if size == 1 else list(x.reshape(-1, size, problem.dimension))
+        pieces = [x] if size == 1 else parts
+        seconds = [sum(problem._native_seconds(part, size > 1) for part in pieces) for _ in range(ROUNDS)]
+        native.append(1e6 * statistics.median(seconds) / POINTS)
+        ask = problem.__call__ if size == 1 else problem.batch
+        python.append(median(lambda: each(ask, parts), POINTS))
+        some = [part.reshape(-1, problem.dimension) for part in parts[: 20 if size == 1 else len(parts)]]
+        numpy.append(median(lambda: each(in_numpy, some), sum(map(len, some)), rounds=3))
+    for kind, times in {"native": native, "Python": python, "numpy": numpy}.items():
+        print(f"| {problem.name}, {kind} | " + " | ".join(f"{t:.3g}" for t in times) + " |")

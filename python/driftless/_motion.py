@@ -189,7 +189,7 @@ class Motion:
     def save_page(self, path: str | os.PathLike[str]) -> None:
         """Writes a page that shows the motion in three dimensions; it holds all its data and loads nothing."""
         with open(path, "w", encoding="utf-8") as file:
-            file.write(self._core.page("Motion"))
+            file.write(self._core.page())
 
     def plot(self, dt: float | None = None) -> Figure:
         """Draws joint angles, their rates, accelerations and jerks with the limits, and the base's attitude with its goal.
@@ -216,7 +216,7 @@ class Motion:
         return f"<driftless.Motion: {self.duration:.4f} s, J {self.cost:.6f}, {verdict}>"
 
     def _repr_html_(self) -> str:
-        page = html.escape(self._core.page("Motion"), quote=True)
+        page = html.escape(self._core.page(), quote=True)
         return (
             f"<p>{html.escape(repr(self)[1:-1])}</p>"
             f'<iframe srcdoc="{page}" style="width:100%;height:640px;border:0" loading="lazy"></iframe>'

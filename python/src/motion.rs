@@ -238,7 +238,8 @@ impl Motion {
     }
 
     /// The page that shows the motion in three dimensions.
-    fn page(&self, py: Python<'_>, name: &str) -> PyResult<String> {
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let name = format!("Motion of {}", self.problem.task().robot.name());
         let optimiser = self.json.get("optimiser").and_then(Value::as_str).unwrap_or_default();
         let found = FoundBy {
             label: "",
@@ -249,7 +250,7 @@ impl Motion {
         let duration = self.assessment.duration;
         let page = py.detach(|| {
             let scene = motion_scene(&*self.problem, &self.coefficients, duration, found)?;
-            Some(driftless::report::motion_page(name, scene))
+            Some(driftless::report::motion_page(&name, scene))
         });
         let none = || errors::search("the motion cannot be shown");
         page.ok_or_else(none)?.or_raise()
