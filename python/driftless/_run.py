@@ -84,7 +84,7 @@ class Result:
 
     def __init__(self, core: _driftless.Results) -> None:
         self._core = core
-        self._findings: list[tuple[str, str]] | None = None
+        self._reported: tuple[Path, list[tuple[str, str]]] | None = None
 
     @property
     def path(self) -> Path:
@@ -181,20 +181,25 @@ class Result:
         told = self._core.report(None if out is None else os.fspath(out), replace)
         if told["kept"] is not None:
             _log.warning("%s shows %d runs, more than are stored, and was left as it was", told["page"], told["kept"])
-        self._findings = [(str(question), str(answer)) for question, answer in told["findings"]]
-        return Path(told["page"])
+        page = Path(told["page"])
+        self._reported = page, [(str(question), str(answer)) for question, answer in told["findings"]]
+        return page
 
     @property
     def findings(self) -> list[tuple[str, str]]:
         """What the runs say, in words: questions and answers."""
-        if self._findings is None:
-            self.report()
-        return list(self._findings or [])
+        return list(self._report()[1])
 
     @property
     def figures(self) -> Figures:
-        """The figures of the report, by name. The report is written first."""
-        return Figures(self.report().parent / "figures")
+        """The figures of the report, by name. The report is written first, unless this result has written it before."""
+        return Figures(self._report()[0].parent / "figures")
+
+    def _report(self) -> tuple[Path, list[tuple[str, str]]]:
+        if self._reported is None:
+            self.report()
+        assert self._reported is not None
+        return self._reported
 
     def __repr__(self) -> str:
         failed = f", {self.failed} failed" if self.failed else ""
@@ -363,11 +368,11 @@ def _experiment(
         name = name or "python"
         if not problems:
             raise ValueError("found neither an experiment file nor problems, expected something to minimise")
-        tasks = [one for one in problems.values() if isinstance(one, Task)]
-        if len(tasks) == len(problems) == 1:
+        (label, only), *others = problems.items()
+        if not others and isinstance(only, Task) and label == only.robot:
             # As a file with a task, so that the command can do what is missing, too.
-            text = f"name = {value(name)}\n{tasks[0]._core.text}{_FIELD}"
-            return _driftless.Experiment.parse(tasks[0]._core.path, text).without_optimisers()
+            text = f"name = {value(name)}\n{only._core.text}{_FIELD}"
+            return _driftless.Experiment.parse(only._core.path, text).without_optimisers()
         core = _driftless.Experiment(name)
     for label, one in problems.items():
         if isinstance(one, Function):

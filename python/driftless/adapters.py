@@ -41,9 +41,13 @@ def scipy(method: str = "COBYQA", **options: Any) -> Optimiser:
     return _adapted(f"{method} (SciPy)", "scipy", _scipy, method=method, **options)
 
 
+_WITH_SLOPES = ("SLSQP", "L-BFGS-B", "TNC", "trust-constr")
+# What each calls its limit, so that none ends before it has converged.
+_LIMIT = {"COBYQA": "maxfev", "TNC": "maxfun"}
+
+
 def _scipy(oracle: Oracle, rng: np.random.Generator, *, method: str, **options: Any) -> None:
-    scipy = _module("scipy.optimize")
-    has_slopes = oracle.has_subgradient and method in ("SLSQP", "L-BFGS-B", "TNC", "trust-constr", "CG", "BFGS")
+    scipy, has_slopes = _module("scipy.optimize"), oracle.has_subgradient and method in _WITH_SLOPES
     low, width = oracle.lower, oracle.upper - oracle.lower
 
     def cost(x: Any) -> Any:
@@ -53,8 +57,7 @@ def _scipy(oracle: Oracle, rng: np.random.Generator, *, method: str, **options: 
         found, slopes = oracle.subgradient(x)
         return found, width * slopes
 
-    limit = {"COBYQA": "maxfev", "TNC": "maxfun"}.get(method, "maxiter")
-    options = {limit: oracle.budget, **options}
+    options = {_LIMIT.get(method, "maxiter"): oracle.budget, **options}
     while True:
         x = rng.random(oracle.dimension)
         scipy.minimize(cost, x, method=method, jac=has_slopes, bounds=scipy.Bounds(0, 1), options=options)

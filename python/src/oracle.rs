@@ -210,7 +210,10 @@ impl State {
     }
 }
 
-/// The only door from a solver to its problem.
+/// The only door from an optimiser to its problem: it counts evaluations and keeps the best.
+///
+/// Once the budget is spent, each question raises `BudgetSpent`. A solver that goes on is told that everything costs infinitely
+/// much, and then left behind. Threads of a solver may share an oracle.
 #[pyclass(module = "driftless", frozen)]
 pub(crate) struct Oracle(pub(crate) Arc<Desk>);
 
@@ -276,61 +279,73 @@ impl Oracle {
 
 #[pymethods]
 impl Oracle {
+    /// The number of variables, n.
     #[getter]
     fn dimension(&self) -> usize {
         self.dimension_of()
     }
 
+    /// Lower bounds, shape (n,).
     #[getter]
     fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         arrays::vector(py, self.0.lower.clone())
     }
 
+    /// Upper bounds, shape (n,).
     #[getter]
     fn upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         arrays::vector(py, self.0.upper.clone())
     }
 
+    /// Evaluations that the run may spend.
     #[getter]
     fn budget(&self) -> u64 {
         self.0.budget
     }
 
+    /// Evaluations that are left.
     #[getter]
     fn remaining(&self, py: Python<'_>) -> PyResult<u64> {
         Ok(self.counts(py)?.1)
     }
 
+    /// Evaluations made.
     #[getter]
     fn evaluations(&self, py: Python<'_>) -> PyResult<u64> {
         Ok(self.counts(py)?.0)
     }
 
+    /// The best point so far, shape (n,), and its cost.
     #[getter]
     fn best<'py>(&self, py: Python<'py>) -> PyResult<Option<(Bound<'py, PyArray1<f64>>, f64)>> {
         let best = self.look(py, |oracle| oracle.best().cloned())?;
         Ok(best.map(|best| (arrays::vector(py, best.x), best.evaluation.cost)))
     }
 
+    /// Whether there are subgradients.
     #[getter]
     fn has_subgradient(&self) -> bool {
         self.0.has[0]
     }
 
+    /// Whether the cost is a sum of terms with smooth pieces.
     #[getter]
     fn has_linearise(&self) -> bool {
         self.0.has[1]
     }
 
+    /// The cost of a point, shape (n,): one evaluation.
     fn __call__(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<f64> {
         Ok(self.one(py, x)?.cost)
     }
 
+    /// Cost and violation of a point: one evaluation.
     fn evaluate(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
         let found = self.one(py, x)?;
         Ok((found.cost, found.violation))
     }
 
+    /// Costs of points, shape (m, n) to shape (m,): m evaluations.
     fn batch<'py>(
         &self,
         py: Python<'py>,
@@ -340,10 +355,12 @@ impl Oracle {
         Ok(arrays::vector(py, found.into_iter().map(|found| found.cost).collect()))
     }
 
+    /// Costs and violations of points: m evaluations.
     fn evaluate_batch(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Pair> {
         Ok(both(py, &self.costs(py, x)?))
     }
 
+    /// The cost of a point within the box, with a subgradient: one evaluation.
     fn subgradient<'py>(
         &self,
         py: Python<'py>,
@@ -356,6 +373,7 @@ impl Oracle {
         Ok((found.evaluation.cost, arrays::vector(py, found.slopes.as_slice().to_vec())))
     }
 
+    /// The cost of a point within the box as a sum of terms: one evaluation.
     fn linearise(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Linearisation> {
         self.check(1)?;
         let x = inside(&self.bounds(), x)?;

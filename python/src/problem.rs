@@ -26,6 +26,8 @@ pub(crate) enum Origin {
 }
 
 /// A cost to minimise in a box.
+///
+/// `Task.problem`, `functions` and `problems` make problems. Calls beyond the box cost infinitely much, as they do in a run; so does NaN.
 #[pyclass(module = "driftless", frozen)]
 pub(crate) struct Problem {
     asked: Arc<dyn driftless::search::Problem>,
@@ -137,64 +139,77 @@ pub(crate) fn both(py: Python<'_>, found: &[Evaluation]) -> Pair {
 
 #[pymethods]
 impl Problem {
+    /// What it is called.
     #[getter]
     fn name(&self) -> &str {
         self.subject.name()
     }
 
+    /// What tells it from others of its experiment; empty where there is but one.
     #[getter]
     fn label(&self) -> &str {
         &self.label
     }
 
+    /// The variables that it is searched in, where there are several.
     #[getter]
     fn formulation(&self) -> Option<&str> {
         Some(&*self.space).filter(|space| !space.is_empty())
     }
 
+    /// The number of variables, n.
     #[getter(dimension)]
     fn get_dimension(&self) -> usize {
         self.dimension()
     }
 
+    /// Lower bounds, shape (n,).
     #[getter]
     fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         arrays::walls(py, self.asked.bounds(), 0)
     }
 
+    /// Upper bounds, shape (n,).
     #[getter]
     fn upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         arrays::walls(py, self.asked.bounds(), 1)
     }
 
+    /// The least cost that anybody has found.
     #[getter]
     fn best_known(&self) -> Option<f64> {
         self.subject.known_cost()
     }
 
+    /// Whether there are subgradients.
     #[getter]
     fn has_subgradient(&self) -> bool {
         self.asked.slopes().is_some()
     }
 
+    /// Whether the cost is a sum of terms with smooth pieces.
     #[getter]
     fn has_linearise(&self) -> bool {
         self.asked.composite().is_some()
     }
 
+    /// The cost of a point, shape (n,).
     fn __call__(&self, x: &Bound<'_, PyAny>) -> PyResult<f64> {
         Ok(self.at(x)?.cost)
     }
 
+    /// By how much a point violates limits; zero within.
     fn violation(&self, x: &Bound<'_, PyAny>) -> PyResult<f64> {
         Ok(self.at(x)?.violation)
     }
 
+    /// Cost and violation of a point.
     fn evaluate(&self, x: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
         let found = self.at(x)?;
         Ok((found.cost, found.violation))
     }
 
+    /// Costs of points, shape (m, n) to shape (m,). Other threads of Python run meanwhile.
     fn batch<'py>(
         &self,
         py: Python<'py>,
@@ -204,10 +219,17 @@ impl Problem {
         Ok(arrays::vector(py, found.into_iter().map(|found| found.cost).collect()))
     }
 
+    /// Costs and violations of points, shape (m, n) to shape (m,) each.
     fn evaluate_batch(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Pair> {
         Ok(both(py, &self.at_all(py, x)?))
     }
 
+    /// The cost of a point within the box, with a subgradient, shape (n,).
+    ///
+    /// Raises
+    /// ------
+    /// NoDerivatives
+    ///     There are none.
     fn subgradient<'py>(
         &self,
         py: Python<'py>,
@@ -219,6 +241,12 @@ impl Problem {
         Ok((found.evaluation.cost, arrays::vector(py, found.slopes.as_slice().to_vec())))
     }
 
+    /// The cost of a point within the box as a sum of terms.
+    ///
+    /// Raises
+    /// ------
+    /// NoDerivatives
+    ///     The cost is no such sum.
     fn linearise(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Linearisation> {
         let x = self.inside(x)?;
         let composite = self.asked.composite().ok_or_else(|| Stop::NoDerivatives.raised())?;
@@ -251,6 +279,7 @@ impl Problem {
         .map_err(|failure: driftless::search::Failure| failure.raised())
     }
 
+    /// The motion that a point stands for, evaluated finely. Of tasks alone.
     fn motion(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
         let x = arrays::point(x, self.dimension())?;
         let any = self.subject.as_any().and_then(|any| any.downcast_ref::<TaskSubject>());
@@ -286,22 +315,31 @@ impl Problem {
     }
 }
 
-/// Values and slopes of the smooth pieces of a cost at a point.
+/// Terms of a cost at a point, with values and slopes of their smooth pieces.
 #[pyclass(module = "driftless", frozen, get_all)]
 pub(crate) struct Linearisation {
+    /// The sum of the terms.
     cost: f64,
+    /// The terms.
     terms: Vec<Py<Term>>,
 }
 
-/// One term of a cost.
+/// One term of a cost: a weight times a convex function of smooth pieces.
 #[pyclass(module = "driftless", frozen, get_all)]
 pub(crate) struct Term {
+    /// The weight.
     weight: f64,
+    /// The convex function: ``"norm"``, ``"max"``, or ``"hinge"``, which is the sum of what is above zero.
     shape: &'static str,
+    /// What the convex function never falls below.
     floor: f64,
+    /// What tells pieces from each other at different points, k numbers.
     tracks: Vec<u64>,
+    /// Where on its track each piece is, shape (k,).
     places: Py<PyArray1<f64>>,
+    /// Values of the pieces, shape (k,).
     values: Py<PyArray1<f64>>,
+    /// Gradients of the pieces, shape (k, n).
     gradients: Py<PyArray2<f64>>,
 }
 

@@ -60,7 +60,7 @@ def test_seeds_determine_adapters(tmp_path: Path) -> None:
 def test_adapters_are_short() -> None:
     for name in ("_scipy", "_cma", "_minionpy", "_nevergrad"):
         lines = inspect.getsource(getattr(adapters, name)).splitlines()
-        assert sum(bool(line.strip()) for line in lines) < 21, name
+        assert sum(bool(line.strip()) for line in lines) < 15, name
 
 
 def test_identities_have_the_packages_version() -> None:
