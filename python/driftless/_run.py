@@ -51,7 +51,8 @@ class Figure:
         return self.svg.read_text(encoding="utf-8")
 
     def __repr__(self) -> str:
-        return f"<driftless.Figure {self.name}: {self.svg}>"
+        # Without its place, which notebooks would store.
+        return f"<driftless.Figure {self.name}>"
 
 
 class Figures(Mapping[str, Figure]):
