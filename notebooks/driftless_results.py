@@ -79,7 +79,10 @@ def show(figure: Figure, name: str, alt: str) -> None:
     figure.savefig(WORK / "figures" / f"{name}.pdf", metadata={"CreationDate": None})
     drawn, png = io.BytesIO(), io.BytesIO()
     figure.savefig(drawn, format="png")
-    few_colours = PIL.Image.open(drawn).convert("RGB").quantize(256, PIL.Image.Quantize.MAXCOVERAGE, dither=0)
+    few_colours = PIL.Image.open(drawn).convert("RGB").quantize(
+        256, PIL.Image.Quantize.MAXCOVERAGE, dither=PIL.Image.Dither.NONE
+    )
     few_colours.save(png, format="png", optimize=True)  # a third of the size
-    display(Image(png.getvalue(), width=round(figure.get_figwidth() * 96), alt=alt))
+    width = round(figure.get_figwidth() * 96)
+    display(Image(png.getvalue(), width=width, alt=alt))  # type: ignore[no-untyped-call]
     plt.close(figure)
