@@ -6,6 +6,7 @@
 # What is stored in target/notebooks/results is not done again. DRIFTLESS_WHEEL names a wheel of the package to
 # install instead of building one, which needs neither Rust nor a C compiler.
 set -euo pipefail
+wheel=${DRIFTLESS_WHEEL:+$(realpath "$DRIFTLESS_WHEEL")}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 fail() {
@@ -18,9 +19,8 @@ case "$*" in
     -h | --help) sed -n '2,7s/^# \{0,1\}//p' notebooks/run.sh; exit ;;
     *) fail "unknown arguments: $* (there is only --check)" 2 ;;
 esac
-wheel=${DRIFTLESS_WHEEL:-}
 if [ -n "$wheel" ]; then
-    [ -f "$wheel" ] || fail "found no file \`$wheel\`, which DRIFTLESS_WHEEL names"
+    [ -f "$wheel" ] || fail "DRIFTLESS_WHEEL is \`$DRIFTLESS_WHEEL\`, expected a wheel"
 else
     command -v cargo > /dev/null || fail "cargo is missing; install the Rust toolchain, or name a wheel in DRIFTLESS_WHEEL"
 fi
@@ -41,7 +41,8 @@ if [ -n "$wheel" ]; then
     "$folder/venv/bin/pip" install --force-reinstall --no-deps "$wheel"
 else
     # Within the workspace's folder for builds, so that only what has changed is compiled.
-    CARGO_TARGET_DIR=$(dirname "$folder") "$folder/venv/bin/pip" install --force-reinstall --no-deps ./python
+    CARGO_TARGET_DIR=$(dirname "$folder") MATURIN_PEP517_ARGS=--locked \
+        "$folder/venv/bin/pip" install --force-reinstall --no-deps ./python
 fi
 
 # The settings and kernels of whoever runs this stay out of it.
