@@ -117,6 +117,8 @@ def test_a_race_is_counted_and_reported(tmp_path: Path) -> None:
                 assert np.array_equal(own[column].fill_null(math.nan).to_numpy(), theirs.to_numpy(), equal_nan=True), (name, column)
     with pytest.raises(KeyError, match="found no table 'nothing', expected one of summary"):
         result.table("nothing")
+    with pytest.raises(KeyError, match="found no table 'nothing', expected one of"):
+        result.caption("nothing")
     with pytest.raises(KeyError, match="found no figure 'nothing'"):
         result.figures["nothing"]
 
