@@ -1,55 +1,38 @@
-"""Figures of one motion, from the table that `driftless plan --motion` writes."""
+"""Figures of one motion."""
+
+from collections.abc import Sequence
 
 import numpy as np
-import polars as pl
 from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from driftless import Samples
 from driftless_results import TWO_COLUMNS
 
-KINDS = {"rate": "°/s", "acceleration": "°/s²", "jerk": "°/s³"}
 
-
-def read_motion(path):
-    """Times [s]; angle, rate, acceleration and jerk, a row per time and a column per joint [rad, s]; and the
-    base's quaternion w, x, y, z, a row per time."""
-    rows = pl.read_csv(path)
-    joints = rows["joint"].n_unique()
-    columns = {kind: rows[kind].to_numpy().reshape(-1, joints) for kind in ["angle", *KINDS]}
-    once = rows.gather_every(joints)
-    base = once.select("base_w", "base_x", "base_y", "base_z").to_numpy()
-    return {"time": once["time"].to_numpy(), **columns, "base": base}
-
-
-def zyx_deg(base):
-    """Yaw, pitch and roll [°] of quaternions w, x, y, z."""
-    w, x, y, z = base.T
-    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-    pitch = np.arcsin(2 * (w * y - z * x))
-    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
-    return np.degrees([yaw, pitch, roll]).T
-
-
-def draw_angles(axes, motion):
+def draw_angles(axes: Axes, motion: Samples) -> None:
     """Joint angles over time, a line per joint."""
-    axes.plot(motion["time"], np.degrees(motion["angle"]))
+    axes.plot(motion.time, np.degrees(motion.angle))
     axes.set(xlabel="time [s]", ylabel="joint angle [°]")
 
 
-def draw_attitude(axes, motion):
+def draw_attitude(axes: Axes, motion: Samples) -> None:
     """Yaw, pitch and roll of the base over time."""
-    lines = axes.plot(motion["time"], zyx_deg(motion["base"]))
+    lines = axes.plot(motion.time, np.degrees(motion.base_zyx))
     axes.set(xlabel="time [s]", ylabel="base attitude [°]")
     axes.legend(lines, ["yaw", "pitch", "roll"])
 
 
-def derivatives_figure(motion, limits):
+def derivatives_figure(motion: Samples, limits: Sequence[float]) -> Figure:
     """Rates, accelerations and jerks, with their limits [°, s] as dotted lines."""
     figure, axes = plt.subplots(1, 3, figsize=(TWO_COLUMNS, 2.6))
-    for panel, (kind, unit), limit in zip(axes, KINDS.items(), limits):
-        lines = panel.plot(motion["time"], np.degrees(motion[kind]))
+    kinds = [("rate", "°/s", motion.rate), ("acceleration", "°/s²", motion.acceleration), ("jerk", "°/s³", motion.jerk)]
+    for panel, (kind, unit, values), limit in zip(axes, kinds, limits):
+        panel.plot(motion.time, np.degrees(values))
         for bound in (-limit, limit):
             panel.axhline(bound, color="black", linewidth=0.8, linestyle=":")
         panel.set(xlabel="time [s]", ylabel=f"{kind} [{unit}]")
-    names = [f"joint {i}" for i in range(1, len(lines) + 1)]
-    figure.legend(lines, names, loc="outside upper center", ncols=len(names))
+    names = [f"joint {i}" for i in range(1, len(motion.joints) + 1)]
+    figure.legend(axes[0].lines[: len(names)], names, loc="outside upper center", ncols=len(names))
     return figure

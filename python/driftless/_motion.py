@@ -76,7 +76,7 @@ class Samples:
 class Motion:
     """A motion of a task: where the joints go, and what is known of it.
 
-    `plan` makes motions, as do `Problem.motion`, `Task.motion` and `Result.motion`. All numbers are certified: evaluated ever more finely
+    `plan` makes motions, as do `Problem.motion` and `Result.motion`. All numbers are certified: evaluated ever more finely
     until they no longer change.
     """
 

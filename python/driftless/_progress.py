@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+import warnings
 from importlib import import_module
 from typing import Any
 
@@ -24,7 +25,10 @@ class Progress:
         if not self._shown or total == 0:
             return
         try:
-            tqdm: Any = import_module("tqdm.auto").tqdm
+            with warnings.catch_warnings():
+                # In a notebook without ipywidgets it warns, and draws nothing.
+                warnings.simplefilter("ignore")
+                tqdm: Any = import_module("tqdm.auto").tqdm
         except ImportError:
             self._line = sys.stderr.isatty()
         else:

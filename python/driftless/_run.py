@@ -51,7 +51,8 @@ class Figure:
         return self.svg.read_text(encoding="utf-8")
 
     def __repr__(self) -> str:
-        return f"<driftless.Figure {self.name}: {self.svg}>"
+        # Without its place, which notebooks would store.
+        return f"<driftless.Figure {self.name}>"
 
 
 class Figures(Mapping[str, Figure]):
@@ -146,7 +147,10 @@ class Result:
 
     def caption(self, name: str) -> str:
         """What a table shows, in words."""
-        return self._core.captions()[name]
+        captions = self._core.captions()
+        if name not in captions:
+            raise KeyError(f"found no table {name!r}, expected one of {', '.join(captions)}")
+        return captions[name]
 
     def motion(self, instance: str = "") -> Motion:
         """The best motion of an instance that is a task.

@@ -71,6 +71,22 @@ def record(result: driftless.Result) -> dict[str, object]:
 # What runs come to
 
 
+def test_a_notebook_without_widgets_is_not_warned() -> None:
+    code = """
+        import sys, types, warnings
+        warnings.simplefilter("always")
+        # As tqdm tells a notebook.
+        sys.modules["ipykernel.zmqshell"] = types.ModuleType("zmqshell")
+        sys.modules["IPython"] = types.SimpleNamespace(get_ipython=object)
+        sys.modules["ipywidgets"] = None
+        import driftless
+        driftless.plan(optimiser="nelder-mead", budget=500)
+        assert "tqdm.autonotebook" in sys.modules
+    """
+    done = child(textwrap.dedent(code))
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_a_race_is_counted_and_reported(tmp_path: Path) -> None:
     problems = [bowl, *driftless.functions("rastrigin", dimension=3)]
     result = driftless.run(
@@ -87,6 +103,7 @@ def test_a_race_is_counted_and_reported(tmp_path: Path) -> None:
     page = result.report()
     assert page.is_file() and {"convergence", "final-costs"} <= set(result.figures)
     assert result.figures["convergence"]._repr_svg_().startswith("<svg")
+    assert repr(result.figures["convergence"]) == "<driftless.Figure convergence>"
     assert all(question.endswith("?") for question, _ in result.findings)
     assert "<table" in result._repr_html_() or "dataframe" in result._repr_html_()
     # Every table is the file that the report has, number by number.
@@ -100,6 +117,8 @@ def test_a_race_is_counted_and_reported(tmp_path: Path) -> None:
                 assert np.array_equal(own[column].fill_null(math.nan).to_numpy(), theirs.to_numpy(), equal_nan=True), (name, column)
     with pytest.raises(KeyError, match="found no table 'nothing', expected one of summary"):
         result.table("nothing")
+    with pytest.raises(KeyError, match="found no table 'nothing', expected one of"):
+        result.caption("nothing")
     with pytest.raises(KeyError, match="found no figure 'nothing'"):
         result.figures["nothing"]
 
