@@ -9,7 +9,9 @@ True
 
 from __future__ import annotations
 
-from ._driftless import Linearisation, Oracle, Problem, Term, __version__
+import atexit
+
+from ._driftless import Linearisation, Oracle, Problem, Term, __version__, end
 from ._errors import (
     AlreadyThere,
     BudgetSpent,
@@ -68,3 +70,7 @@ __all__ = [
     "run",
     "scipy",
 ]
+
+# Work in threads that Python does not wait for is ended before Python is.
+atexit.register(end, 10.0)
+del atexit, end

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+import math
+import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._identity import digest
+from ._identity import digest, told
 from ._toml import value
 
 __all__ = ["Builtin", "Function", "Optimiser", "builtin", "optimiser", "problem"]
@@ -21,7 +24,7 @@ _Solver = Callable[..., object]
 _Cost = Callable[[NDArray[np.float64]], Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Optimiser:
     """An optimiser that is a function ``f(oracle, rng, **settings)``; the decorator `optimiser` makes one.
 
@@ -99,8 +102,12 @@ class Optimiser:
 
     def identity(self) -> dict[str, Any]:
         """All that determines its runs beside formulation, seed and budget."""
-        settings = {name: _plain(x) for name, x in self.all_settings().items()}
-        return {**settings, "version": self.version, "source": digest(self.function)}
+        settings = {f"setting {name}": told(x) for name, x in self.all_settings().items()}
+        return {**settings, "version": told(self.version), "code": digest(self.function)}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        state = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name != "function"}
+        return _by_name, (Optimiser, *_place(self.function, self.name), state)
 
     def __repr__(self) -> str:
         changed = ", ".join(f"{name}={x!r}" for name, x in self.settings.items())
@@ -108,18 +115,31 @@ class Optimiser:
 
 
 def _keywords(function: _Solver) -> dict[str, Any] | None:
-    """The keyword arguments of a function and their defaults, `Parameter.empty` where there is none; None where it takes any."""
-    parameters = inspect.signature(function).parameters.values()
+    """The settings of a function and their defaults, `Parameter.empty` where there is none; None where it takes any."""
+    parameters = list(inspect.signature(function).parameters.values())
     if any(p.kind is p.VAR_KEYWORD for p in parameters):
         return None
-    return {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}
+    # The first two are the oracle and the generator.
+    only, either = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
+    return {p.name: p.default for k, p in enumerate(parameters) if p.kind is only or k > 1 and p.kind is either}
 
 
-def _plain(x: Any) -> Any:
-    """A value as an identity has it."""
-    if isinstance(x, (np.integer, np.floating)):
-        x = x.item()
-    return x if isinstance(x, (int, float, str, type(None))) and not isinstance(x, bool) else repr(x)
+def _place(function: Any, name: str) -> tuple[str, str]:
+    """Module and name under which a function, or what it was made into, is found."""
+    module, qualified = getattr(function, "__module__", None), getattr(function, "__qualname__", "")
+    found: Any = sys.modules.get(module or "")
+    for part in qualified.split("."):
+        found = getattr(found, part, None)
+    if module is None or getattr(found, "function", found) is not function:
+        raise ValueError(f"{name} is not at the top level of a module under its own name, where other processes find it")
+    return module, qualified
+
+
+def _by_name(kind: Any, module: str, qualified: str, state: dict[str, Any]) -> Any:
+    found: Any = import_module(module)
+    for part in qualified.split("."):
+        found = getattr(found, part)
+    return kind(function=getattr(found, "function", found), **state)
 
 
 @overload
@@ -201,7 +221,7 @@ def builtin(name: str, *, label: str | None = None, **settings: Any) -> Builtin:
     return Builtin(name, settings, label)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Function:
     """A problem that is a function of a point, or of many; the decorator `problem` makes one.
 
@@ -232,8 +252,19 @@ class Function:
     upper: NDArray[np.float64]
     batched: bool = False
     least_cost: float | None = None
-    targets: tuple[float, ...] = ()
+    targets: float | Sequence[float] = ()
     version: int | str = 1
+
+    def __post_init__(self) -> None:
+        lower, upper = np.array(self.lower, dtype=float), np.array(self.upper, dtype=float)
+        if lower.ndim != 1 or lower.shape != upper.shape:
+            raise ValueError(f"found bounds of shape {lower.shape} and {upper.shape}, expected (n,)")
+        targets = tuple(float(target) for target in np.atleast_1d(np.asarray(self.targets, dtype=float)))
+        numbers = [*targets, *([] if self.least_cost is None else [self.least_cost])]
+        if not all(math.isfinite(number) for number in numbers):
+            raise ValueError("found a least cost or a target that is infinite or NaN, expected numbers")
+        for name, x in (("lower", lower), ("upper", upper), ("targets", targets)):
+            object.__setattr__(self, name, x)
 
     @property
     def dimension(self) -> int:
@@ -246,7 +277,11 @@ class Function:
     def identity(self) -> dict[str, Any]:
         """All that determines its costs."""
         box = [float(x).hex() for x in (*self.lower, *self.upper)]
-        return {"box": " ".join(box), "version": self.version, "source": digest(self.function)}
+        return {"box": " ".join(box), "version": told(self.version), "code": digest(self.function)}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        state = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name != "function"}
+        return _by_name, (Function, *_place(self.function, self.name), state)
 
     def __repr__(self) -> str:
         return f"<driftless.Function {self.name}, {self.dimension} variables>"
@@ -260,7 +295,7 @@ def problem(
     name: str | None = None,
     batched: bool = False,
     least_cost: float | None = None,
-    targets: Sequence[float] = (),
+    targets: float | Sequence[float] = (),
     version: int | str = 1,
 ) -> Callable[[_Cost], Function]:
     """Makes a problem of a function.
@@ -293,29 +328,34 @@ def problem(
 
     def decorate(function: _Cost) -> Function:
         own = name or str(getattr(function, "__name__", "problem"))
-        return Function(own, function, low, up, batched, least_cost, tuple(map(float, targets)), version)
+        return Function(own, function, low, up, batched, least_cost, targets, version)
 
     return decorate
 
 
 def external_table(entrant: Optimiser) -> str:
     """The table of an experiment file that runs an optimiser as a process."""
-    function = inspect.unwrap(entrant.function)
+    function = entrant.function
     try:
+        module, name = _place(function, entrant.name)
         file = inspect.getsourcefile(function)
-    except TypeError:
-        file = None
-    module = sys.modules.get(getattr(function, "__module__", ""), None)
-    name = getattr(function, "__qualname__", "")
-    if file is None or module is None or "<" in name or not hasattr(module, name.split(".")[0]):
+    except (TypeError, ValueError):
+        module, name, file = "", "", None
+    if file is None or not os.path.isfile(file):
         raise ValueError(
-            f"{entrant.name} cannot run in a process of its own: expected a function at the top level of a file"
+            f"{entrant.name} cannot run in a process of its own: expected a function at the top level of a file, under its own name"
         )
+    settings = entrant.all_settings()
+    # TOML has no None; the function has it by default.
+    defaults = _keywords(function) or {}
+    settings = {key: x for key, x in settings.items() if not (x is None and defaults.get(key, x) is None)}
+    # Modules of a package are imported by their names, since they may import each other.
+    where = module if "." in module else os.path.abspath(file)
     table = {
         "name": entrant.name,
-        "command": [sys.executable, "-m", "driftless.solve", file, name],
-        "files": [file],
-        "settings": entrant.all_settings(),
+        "command": [sys.executable, "-m", "driftless.solve", where, name, f"version={entrant.version}"],
+        "files": [os.path.abspath(file)],
+        "settings": settings,
     }
     if entrant.formulation:
         table["formulation"] = entrant.formulation

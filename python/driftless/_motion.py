@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import os
+from copy import deepcopy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -149,7 +150,7 @@ class Motion:
 
     def as_dict(self) -> dict[str, Any]:
         """All that is known of it: the fields that ``driftless plan --json`` prints."""
-        return dict(self._told)
+        return deepcopy(self._told)
 
     def sample(self, dt: float | None = None) -> Samples:
         """The motion at equally spaced times.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +18,9 @@ __all__ = ["plot"]
 
 def plot(motion: Motion, dt: float | None) -> Figure:
     """Joint angles, their derivatives with the limits, and the base's attitude with its goal."""
+    if "IPython" in sys.modules:
+        # With pyplot a notebook learns how to show figures.
+        import_module("matplotlib.pyplot")
     from matplotlib.figure import Figure
 
     samples = motion.sample(dt)

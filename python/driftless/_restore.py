@@ -7,8 +7,13 @@ from typing import Any
 from . import _driftless
 from ._driftless import Problem
 from ._motion import Motion
+from ._task import Task
 
-__all__ = ["experiment_problem", "motion", "task_problem"]
+__all__ = ["experiment_problem", "motion", "task", "task_problem"]
+
+
+def task(home: str, text: str) -> Task:
+    return Task._of(_driftless.Task(home, text), home)
 
 
 def task_problem(path: str, text: str, formulation: str) -> Problem:

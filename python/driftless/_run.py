@@ -5,13 +5,15 @@ from __future__ import annotations
 import html
 import io
 import logging
+import operator
 import os
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import polars as pl
 
 from . import _driftless
@@ -27,6 +29,9 @@ from ._toml import value
 __all__ = ["Figure", "Figures", "Result", "open_results", "run"]
 
 _log = logging.getLogger("driftless")
+
+# The file or module that a process is loading to take an optimiser from it.
+loading: str | None = None
 
 _Entrant = Optimiser | Builtin | str
 _Minimised = Problem | Function | Task
@@ -141,6 +146,8 @@ class Result:
             ``to_pandas()`` makes a table of pandas of it.
         """
         data = self._core.table(name)
+        for damage in self._core.damage:
+            _log.warning("%s; its runs are left out until `run` does them again", damage)
         if data is None:
             raise KeyError(f"found no table {name!r}, expected one of {', '.join(self.tables)}")
         return pl.read_parquet(io.BytesIO(data))
@@ -204,6 +211,9 @@ class Result:
             self.report()
         assert self._reported is not None
         return self._reported
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return open_results, (str(self.path.absolute()),)
 
     def __repr__(self) -> str:
         failed = f", {self.failed} failed" if self.failed else ""
@@ -308,7 +318,20 @@ def run(
     ...     result.table("summary")["optimiser"].to_list()
     ['guess', 'cma-es']
     """
-    entrants = [optimisers] if isinstance(optimisers, (str, Optimiser, Builtin)) else list(optimisers)
+    if loading is not None:
+        raise RuntimeError(
+            f"{loading} runs an experiment when it is imported, which a process of an optimiser does: "
+            'write `if __name__ == "__main__":` in front'
+        )
+    if isolation not in (None, "thread", "process"):
+        raise ValueError(f'found isolation {isolation!r}, expected "thread" or "process"')
+    entrants = _entrants(optimisers)
+    numbers = {"seeds": (seeds, 1_000_000), "budget": (budget, 10**12), "jobs": (jobs, 1024)}
+    for what, (number, most) in numbers.items():
+        if number is not None and not 1 <= operator.index(number) <= most:
+            raise ValueError(f"found {what} = {number}, expected 1 to {most}")
+    if out is not None and not os.fspath(out):
+        raise ValueError("found an empty path, expected a folder for the results")
     if isolation is not None:
         entrants = [e.replace(isolation=isolation) if isinstance(e, Optimiser) else e for e in entrants]
     core = _experiment(experiment, name, _labelled(problems))
@@ -346,10 +369,22 @@ class _Watched:
             _log.log(level, "%s seed %d: %s%s", where, seed, found, f": {message}" if message else "")
 
 
+def _entrants(optimisers: Any) -> list[_Entrant]:
+    one = isinstance(optimisers, (str, Optimiser, Builtin)) or callable(optimisers) or optimisers is None
+    entrants = [optimisers] if one else list(optimisers)
+    for entrant in entrants:
+        if not isinstance(entrant, (str, Optimiser, Builtin)):
+            what = getattr(entrant, "__name__", repr(entrant))
+            raise TypeError(f"found {what}, expected a name or an optimiser: decorate functions with `driftless.optimiser`")
+    return entrants
+
+
 def _labelled(problems: _Minimised | Sequence[_Minimised] | Mapping[str, _Minimised]) -> dict[str, _Minimised]:
     if isinstance(problems, Mapping):
+        _check_problems(problems.values())
         return dict(problems)
-    all_ = [problems] if isinstance(problems, (Problem, Function, Task)) else list(problems)
+    all_ = list(problems) if isinstance(problems, Iterable) and not isinstance(problems, str) else [problems]
+    _check_problems(all_)
     labelled: dict[str, _Minimised] = {}
     for one in all_:
         label = one.robot if isinstance(one, Task) else one.name if isinstance(one, Function) else one.label or one.name
@@ -357,6 +392,13 @@ def _labelled(problems: _Minimised | Sequence[_Minimised] | Mapping[str, _Minimi
             raise ValueError(f"found two problems {label!r}, expected a mapping with a label for each")
         labelled[label] = one
     return labelled
+
+
+def _check_problems(problems: Iterable[Any]) -> None:
+    for one in problems:
+        if not isinstance(one, (Problem, Function, Task)):
+            what = getattr(one, "__name__", repr(one))
+            raise TypeError(f"found {what}, expected a task or a problem: decorate functions with `driftless.problem`")
 
 
 def _experiment(
@@ -382,7 +424,7 @@ def _experiment(
         if isinstance(one, Function):
             box = one.lower.tolist(), one.upper.tolist()
             core = core.with_function(
-                label, one.identity(), one.function, one.batched, *box, one.least_cost, list(one.targets)
+                label, one.identity(), one.function, one.batched, *box, one.least_cost, list(np.atleast_1d(one.targets))
             )
         else:
             core = core.with_problem(one.problem() if isinstance(one, Task) else one, label, [])

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
 
 from . import _driftless
 from ._driftless import Problem
+from ._errors import InputError
 from ._toml import value
 
 __all__ = ["functions", "problems"]
@@ -41,7 +45,7 @@ def functions(
     <driftless.Problem ackley dimension=5 instance=1, 5 variables>
     """
     names = [name] if isinstance(name, str) else list(name)
-    dimensions = [dimension] if isinstance(dimension, int) else list(dimension)
+    dimensions = np.atleast_1d(dimension).tolist()
     table = f"name = {value(names)}\ndimension = {value(dimensions)}\ninstances = {value(instances)}\n"
     text = f'name = "functions"\n\n[functions]\n{table}{_FIELD}'
     return _driftless.problems(os.path.abspath("functions"), text, "")
@@ -61,5 +65,8 @@ def problems(path: str | os.PathLike[str], formulation: str | None = None) -> li
     -------
     list of Problem
     """
-    with open(path, encoding="utf-8") as file:
-        return _driftless.problems(os.path.abspath(path), file.read(), formulation or "")
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read: {error}", os.fspath(path)) from error
+    return _driftless.problems(os.path.abspath(path), text, formulation or "")

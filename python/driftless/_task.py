@@ -100,9 +100,9 @@ class Task:
         self._core, self._home = _driftless.Task("Task", text), "Task"
 
     @classmethod
-    def _of(cls, core: _driftless.Task) -> Task:
+    def _of(cls, core: _driftless.Task, home: str) -> Task:
         task = cls.__new__(cls)
-        task._core, task._home = core, os.path.abspath(core.path)
+        task._core, task._home = core, home
         return task
 
     @classmethod
@@ -119,7 +119,7 @@ class Task:
         InputError
             The file cannot be read or used.
         """
-        return cls._of(_driftless.Task.read(os.fspath(path)))
+        return cls._of(_driftless.Task.read(os.fspath(path)), os.path.abspath(path))
 
     @classmethod
     def from_toml(cls, text: str, path: str | os.PathLike[str] = "task.toml") -> Task:
@@ -137,7 +137,7 @@ class Task:
         InputError
             The text cannot be used.
         """
-        return cls._of(_driftless.Task(os.fspath(path), text))
+        return cls._of(_driftless.Task(os.fspath(path), text), os.path.abspath(path))
 
     @property
     def robot(self) -> str:
@@ -184,7 +184,9 @@ class Task:
         return self._core.to_toml()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (Task.from_toml, (self._core.text, self._home))
+        from ._restore import task
+
+        return (task, (self._home, self._core.text))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Task):

@@ -25,7 +25,7 @@ def value(x: Any) -> str:
     if isinstance(x, float):
         return repr(x) if math.isfinite(x) else str(x)
     if isinstance(x, str):
-        return json.dumps(x, ensure_ascii=False)
+        return json.dumps(x, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(x, Mapping):
         parts = [f"{key if _is_bare(key) else json.dumps(key)} = {value(part)}" for key, part in x.items()]
         return "{ " + ", ".join(parts) + " }" if parts else "{}"

@@ -76,11 +76,16 @@ def cma(sigma: float = 0.3, **options: Any) -> Optimiser:
     return _adapted("CMA-ES (pycma)", "cma", _cma, sigma=sigma, **options)
 
 
+def _normal(rng: np.random.Generator) -> Callable[..., Any]:
+    return lambda *shape: rng.standard_normal(shape)
+
+
 def _cma(oracle: Oracle, rng: np.random.Generator, *, sigma: float, **options: Any) -> None:
     cma = _module("cma")
     low, width, size = oracle.lower, oracle.upper - oracle.lower, 4 + int(3 * np.log(oracle.dimension))
     while True:
-        own = {"bounds": [0, 1], "seed": int(rng.integers(1, 2**31)), "popsize": size, "verbose": -9}
+        # Without a generator of its own it draws from numpy's global one.
+        own = {"bounds": [0, 1], "seed": np.nan, "randn": _normal(rng), "popsize": size, "verbose": -9}
         search = cma.CMAEvolutionStrategy(rng.random(oracle.dimension), sigma, {**own, **options})
         while not search.stop():
             points = search.ask()
@@ -107,19 +112,21 @@ def _minionpy(oracle: Oracle, rng: np.random.Generator, *, algorithm: str, **opt
     def costs(points: Any, *_: Any) -> Any:
         return oracle.batch(points).tolist()
 
-    own = {"algo": algorithm, "maxevals": oracle.budget, "seed": int(rng.integers(2**31))}
+    own = {"algo": algorithm, "maxevals": oracle.budget, "seed": int(rng.integers(2**31)), "x0": [rng.uniform(*zip(*box)).tolist()]}
     _module("minionpy").Minimizer(costs, box, **own, options=options or None).optimize()
 
 
 def nevergrad(optimizer: str = "NGOpt") -> Optimiser:
     """An optimiser of ``nevergrad``: ``"NGOpt"`` and others of its registry. Variables are scaled to the unit cube.
 
+    It runs in a process of its own, since many of them draw from numpy's global generator.
+
     Parameters
     ----------
     optimizer : str
         Its name in the registry.
     """
-    return _adapted(f"{optimizer} (nevergrad)", "nevergrad", _nevergrad, optimizer=optimizer)
+    return _adapted(f"{optimizer} (nevergrad)", "nevergrad", _nevergrad, optimizer=optimizer).replace(isolation="process")
 
 
 def _nevergrad(oracle: Oracle, rng: np.random.Generator, *, optimizer: str) -> None:

@@ -207,7 +207,8 @@ impl Experiment {
     ) -> PyResult<Self> {
         let pairs = lower.into_iter().zip(upper).map(|(lower, upper)| [lower, upper]).collect();
         let bounds = Bounds::new(pairs).or_raise()?;
-        let problem = PythonProblem { function, is_batched, bounds, least_cost };
+        let interrupted = Mutex::default();
+        let problem = PythonProblem { function, is_batched, bounds, least_cost, interrupted };
         let instance = Instance::of_problem(name, identity(identity_of)?, problem);
         let experiment = self.experiment.clone().with_instance(instance.with_targets(targets));
         Ok(Self { experiment, file: self.file.clone() })
@@ -233,16 +234,15 @@ impl Experiment {
             let message = format!("found jobs = {jobs}, expected 1 to {MOST_JOBS}");
             return Err(pyo3::exceptions::PyValueError::new_err(message));
         }
-        let ready = py.detach(|| {
-            self.experiment.ask_programs()?;
-            self.experiment.plan()
-        });
-        let plan = ready.or_raise()?;
-        if plan.optimisers.is_empty() {
-            return Err(errors::usage("found no optimiser, expected at least one"));
-        }
-        let path = out.unwrap_or_else(|| Path::new("results").join(&plan.name));
-        let folder = py.detach(|| {
+        let watch = Watch::default();
+        // On a thread of its own, too: problems that are functions are asked here, and Ctrl-C is not for them.
+        let ready = || -> PyResult<Folder> {
+            self.experiment.ask_programs().or_raise()?;
+            let plan = self.experiment.plan().or_raise()?;
+            if plan.optimisers.is_empty() {
+                return Err(errors::usage("found no optimiser, expected at least one"));
+            }
+            let path = out.unwrap_or_else(|| Path::new("results").join(&plan.name));
             plan.check_possible(&path).or_raise()?;
             let folder = Folder::create(&path, plan).or_raise()?;
             let again = match again {
@@ -251,15 +251,15 @@ impl Experiment {
                 _ => None,
             };
             if let Some(again) = again {
-                let runs = folder.runs(None);
-                folder.forget(&runs, again, &|| ()).or_raise()?;
+                folder.forget(&folder.runs(None), again, &|| ()).or_raise()?;
             }
-            Ok::<_, PyErr>(folder)
-        })?;
+            Ok(folder)
+        };
+        let folder = watched(py, &watch, ready, |_| Ok(()))??;
         let missing = py.detach(|| folder.missing(None)).or_raise()?;
         let evaluations: u64 = missing.iter().map(|run| run.budget).sum();
         begin.call1((folder.path(), missing.len(), folder.plan.runs.len(), evaluations))?;
-        let (watch, told) = (Watch::default(), Told::default());
+        let told = Told::default();
         let tell = |_: Python<'_>| {
             let lines = told.0.lock().map(|mut told| std::mem::take(&mut *told));
             tick.call1((watch.evaluations(), lines.unwrap_or_default())).map(drop)

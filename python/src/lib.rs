@@ -34,6 +34,8 @@ mod _driftless {
     use crate::results::Results;
     #[pymodule_export]
     use crate::task::{Task, plan};
+    #[pymodule_export]
+    use crate::watched::end;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -30,6 +30,8 @@ const _: () = is_send::<driftless::search::Oracle<'static>>();
 /// What a run and its solver share.
 pub(crate) struct Desk {
     state: Mutex<State>,
+    /// The thread whose question is being answered: a problem may ask nothing itself.
+    asking: Mutex<Option<ThreadId>>,
     /// Told when a solver goes on although its search is over.
     gone_on: Mutex<Sender<super::solver::Ended>>,
     process: u32,
@@ -73,6 +75,7 @@ impl Desk {
         let side = |side: usize| oracle.bounds().iter().map(|pair| pair[side]).collect();
         Self {
             state: Mutex::default(),
+            asking: Mutex::default(),
             gone_on: Mutex::new(gone_on),
             process: std::process::id(),
             lower: side(0),
@@ -127,6 +130,15 @@ impl Desk {
         }
     }
 
+    /// Whether this thread is not being answered already.
+    fn check_entry(&self) -> PyResult<()> {
+        let asking = *self.asking.lock().unwrap_or_else(PoisonError::into_inner);
+        if asking == Some(thread::current().id()) {
+            return Err(errors::search("a problem cannot ask the oracle that asks it"));
+        }
+        Ok(())
+    }
+
     /// Asks the oracle, from whichever thread. None where the search has been over for some time and a solver has not noticed.
     fn ask<R: Send>(
         &self,
@@ -137,6 +149,14 @@ impl Desk {
         if self.process != std::process::id() {
             return Err(errors::closed("this oracle belongs to a run of another process"));
         }
+        self.check_entry()?;
+        let asking = &self.asking;
+        let question = move |oracle: &mut driftless::search::Oracle<'_>, outside: &mut usize| {
+            *asking.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread::current().id());
+            let answer = question(oracle, outside);
+            *asking.lock().unwrap_or_else(PoisonError::into_inner) = None;
+            answer
+        };
         // A thread that has the lock may need Python before it lets go of it, so it is waited for without.
         let free = if is_long { None } else { self.state.try_lock().ok() };
         let answer = match free {
@@ -257,6 +277,7 @@ impl Oracle {
         py: Python<'_>,
         question: impl FnOnce(&driftless::search::Oracle<'_>) -> R + Send,
     ) -> PyResult<R> {
+        self.0.check_entry()?;
         let look = || {
             let state = self.0.lock();
             // SAFETY: as in `State::ask`.
@@ -379,6 +400,10 @@ impl Oracle {
         let x = inside(&self.bounds(), x)?;
         let found = self.0.ask(py, true, |oracle, _| oracle.linearise(&x))?;
         Linearisation::of(py, &found.ok_or_else(|| Stop::BudgetSpent.raised())?, x.len())
+    }
+
+    fn _enter(&self) {
+        self.0.enter();
     }
 
     fn __repr__(&self) -> String {

@@ -282,11 +282,19 @@ impl Problem {
     /// The motion that a point stands for, evaluated finely. Of tasks alone.
     fn motion(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
         let x = arrays::point(x, self.dimension())?;
+        if let Some(k) = x.iter().position(|x| !x.is_finite()) {
+            let message = format!("found x[{k}] = {}, expected a number", x[k]);
+            return Err(pyo3::exceptions::PyValueError::new_err(message));
+        }
         let any = self.subject.as_any().and_then(|any| any.downcast_ref::<TaskSubject>());
         let task = any
             .ok_or_else(|| errors::usage("the problem is no task, so its points are no motions"))?;
         let coefficients = task.coefficients(&self.space, &x).unwrap_or_default();
         let duration = (self.space != "time-free").then(|| x.last().copied()).flatten();
+        if let Some(duration) = duration.filter(|duration| *duration <= 0.0) {
+            let message = format!("found a duration of {duration} s, expected one above zero");
+            return Err(pyo3::exceptions::PyValueError::new_err(message));
+        }
         let source = match &self.origin {
             Origin::Task { path, text } => Some((path.clone(), text.clone())),
             Origin::Experiment { .. } => None,

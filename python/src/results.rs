@@ -27,7 +27,19 @@ impl Results {
         Self { folder, tables: OnceLock::new() }
     }
 
+    /// Whether the folder is still there.
+    fn check(&self) -> PyResult<()> {
+        if self.folder.experiment_file().is_file() {
+            return Ok(());
+        }
+        let path = self.folder.path().display();
+        Err(errors::results(format!(
+            "the results in {path} are gone: found no experiment.toml there"
+        )))
+    }
+
     fn tables(&self, py: Python<'_>) -> PyResult<&[Table]> {
+        self.check()?;
         if let Some(tables) = self.tables.get() {
             return Ok(tables);
         }
@@ -69,11 +81,18 @@ impl Results {
     /// Planned, stored and failed runs.
     #[getter]
     fn counts(&self, py: Python<'_>) -> PyResult<[usize; 3]> {
+        self.check()?;
         let planned = self.folder.plan.runs.len();
         let found = py.detach(|| standing(&self.folder.plan, &self.folder.store));
         let failed = found.or_raise()?.failures.len();
         let missing = self.folder.missing(None).or_raise()?.len();
         Ok([planned, planned - missing, failed])
+    }
+
+    /// What is wrong with stored files, of those that have been read.
+    #[getter]
+    fn damage(&self) -> Vec<String> {
+        self.folder.store.damaged().iter().map(ToString::to_string).collect()
     }
 
     fn captions(&self, py: Python<'_>) -> PyResult<BTreeMap<String, String>> {
@@ -100,6 +119,7 @@ impl Results {
         out: Option<PathBuf>,
         replace: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
+        self.check()?;
         let folder = &self.folder;
         let report = py.detach(|| {
             let results = folder.path();
@@ -121,6 +141,7 @@ impl Results {
 
     /// The best motion of an instance that is a task.
     fn motion(&self, py: Python<'_>, instance: &str) -> PyResult<Option<Py<PyAny>>> {
+        self.check()?;
         let plan = &self.folder.plan;
         let runs = py.detach(|| driftless::experiment::load(plan, &self.folder.store));
         let runs = runs.or_raise()?;

@@ -1,12 +1,12 @@
 //! Optimisers and problems that are functions in Python.
 
-use std::sync::Arc;
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::thread;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use driftless::optimiser::Optimiser;
-use driftless::search::{Bounds, Evaluation, Failure, Points, Problem, Rng, Stop};
+use driftless::search::{Bounds, Evaluation, Failure, Points, Problem, Rng, Stop, Watch};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 
@@ -35,17 +35,33 @@ pub(crate) enum Ended {
     WentOn,
 }
 
+/// What a solver's thread calls when it has ended.
+#[pyclass(frozen)]
+struct Tell(Mutex<Sender<Ended>>);
+
+#[pymethods]
+impl Tell {
+    fn __call__(&self, py: Python<'_>, error: Option<&Bound<'_, PyAny>>) {
+        let ended = error.map_or(Ok(()), |error| Err(told(py, &PyErr::from_value(error.clone()))));
+        let sender = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        // The run may have gone on without its solver.
+        let _ = sender.send(Ended::Returned(ended));
+    }
+}
+
 impl PythonOptimiser {
-    /// Calls the function; what it raised, in words.
-    fn call(&self, desk: &Arc<Desk>, seed: u64) -> Result<(), String> {
+    /// Calls the function in a thread of Python's, which can be left behind when Python ends.
+    fn start(&self, desk: &Arc<Desk>, seed: u64, sender: Sender<Ended>) -> Result<(), Failure> {
         Python::attach(|py| {
-            let call = || -> PyResult<()> {
+            let start = || -> PyResult<()> {
                 let oracle = Py::new(py, Oracle(desk.clone()))?;
                 let rng = py.import("numpy.random")?.call_method1("default_rng", (seed,))?;
-                self.function.bind(py).call((oracle, rng), Some(self.settings.bind(py)))?;
+                let tell = Py::new(py, Tell(Mutex::new(sender)))?;
+                let arguments = (&self.function, oracle, rng, &self.settings, tell);
+                py.import("driftless._solver")?.call_method1("start", arguments)?;
                 Ok(())
             };
-            call().map_err(|error| told(py, &error))
+            start().map_err(|error| Failure::new(told(py, &error)))
         })
     }
 }
@@ -60,21 +76,7 @@ impl Optimiser for PythonOptimiser {
         let desk = Arc::new(Desk::new(oracle, sender.clone()));
         let seed = rng.seed();
         let open = desk.open(oracle);
-        // A solver that never ends is left behind with its thread, hence no scoped one.
-        let solver = Python::attach(|py| Self {
-            function: self.function.clone_ref(py),
-            settings: self.settings.clone_ref(py),
-            formulation: None,
-            needs_derivatives: false,
-        });
-        let inside = desk.clone();
-        let thread = thread::Builder::new().spawn(move || {
-            inside.enter();
-            let ended = solver.call(&inside, seed);
-            Python::attach(|_| drop(solver));
-            let _ = sender.send(Ended::Returned(ended));
-        });
-        thread.map_err(|error| Failure::new(format!("cannot start a thread: {error}")))?;
+        self.start(&desk, seed, sender)?;
         let returned = loop {
             match receiver.recv_timeout(TICK) {
                 Ok(Ended::Returned(ended)) => break Some(ended),
@@ -101,7 +103,7 @@ impl Optimiser for PythonOptimiser {
             (Some(stop), _) => Err(stop),
             (None, Some(Err(told))) => Err(Failure::new(told).into()),
             (None, Some(Ok(()))) => Ok(()),
-            (None, None) => Err(Failure::new("the solver's thread panicked").into()),
+            (None, None) => Err(Failure::new("the solver's thread ended without a word").into()),
         }
     }
 
@@ -121,6 +123,8 @@ pub(crate) struct PythonProblem {
     pub(crate) is_batched: bool,
     pub(crate) bounds: Bounds,
     pub(crate) least_cost: Option<f64>,
+    /// True once the user wants the experiment to end.
+    pub(crate) interrupted: Mutex<Arc<AtomicBool>>,
 }
 
 /// A number, or a cost and a violation.
@@ -187,10 +191,18 @@ impl Problem for PythonProblem {
             found.into_iter().for_each(each);
             return Ok(());
         }
+        let interrupted = self.interrupted.lock().unwrap_or_else(PoisonError::into_inner).clone();
         points.iter().try_for_each(|x| {
+            if interrupted.load(Ordering::Relaxed) {
+                return Err(Failure::new("interrupted"));
+            }
             each(self.evaluate(x)?);
             Ok(())
         })
+    }
+
+    fn prepare(&self, watch: &Watch) {
+        *self.interrupted.lock().unwrap_or_else(PoisonError::into_inner) = watch.flag();
     }
 
     fn least_cost(&self) -> Option<f64> {

@@ -60,6 +60,8 @@ pub fn run(
     let (missing, foreign): (Vec<_>, Vec<_>) =
         missing.partition(|run| plan.obstacle(run).is_none());
     let batches = batches(&missing);
+    // More threads than batches would have nothing to do.
+    let jobs = jobs.min(batches.len()).max(1);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| RunError::Threads(error.to_string()))?;
     // Each thread takes the next batch. Shared out as tasks of the pool, a run could begin within another's:
