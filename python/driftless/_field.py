@@ -44,7 +44,7 @@ class Optimiser:
     needs_derivatives : bool
         Whether it is only for problems with derivatives.
     version : int or str
-        Part of what tells its runs from those of earlier versions, beside the function's source.
+        Part of what tells its runs from those of earlier versions, beside the function's code.
     label : str or None
         What tables and charts call it, instead of the name.
     seeds, budget : int or None
@@ -243,7 +243,7 @@ class Function:
     targets : tuple of float
         Costs that runs are asked to reach.
     version : int or str
-        Part of what tells its runs from those of earlier versions, beside the function's source.
+        Part of what tells its runs from those of earlier versions, beside the function's code.
     """
 
     name: str

@@ -130,7 +130,7 @@ class _Walk:
     def _add_object(self, thing: Any) -> None:
         self.add(type(thing))
         state = getattr(thing, "__dict__", None)
-        if isinstance(state, dict) and state:
+        if isinstance(state, dict) and type(thing).__reduce__ is object.__reduce__:
             self.add(state)
             return
         try:
@@ -161,10 +161,8 @@ def told(x: Any) -> int | float | str | None:
         x = x.item()
     if isinstance(x, bool):
         return int(x)
-    if isinstance(x, (int, float, type(None))):
+    if isinstance(x, (int, float, str, type(None))):
         return x
-    if isinstance(x, str):
-        return f"text: {x}"
     if isinstance(x, Callable):  # type: ignore[arg-type]
         walk = _Walk(getattr(x, "__module__", None))
         walk.add(x)

@@ -14,6 +14,8 @@ def call(function: Callable[..., Any], oracle: Any, rng: Any, settings: dict[str
     """Calls a solver, which has to be done when it returns."""
     found = function(oracle, rng, **settings)
     if inspect.isgenerator(found) or inspect.iscoroutine(found) or inspect.isasyncgen(found):
+        if not inspect.isasyncgen(found):
+            found.close()
         raise TypeError(f"the optimiser returned a {type(found).__name__}, expected a function that searches when it is called")
 
 

@@ -67,7 +67,7 @@ def test_identities_have_the_packages_version() -> None:
     import scipy
 
     assert driftless.scipy("SLSQP").identity()["version"] == f"scipy {scipy.__version__}"
-    assert driftless.scipy("SLSQP", ftol=1e-3).identity()["ftol"] == 1e-3
+    assert driftless.scipy("SLSQP", ftol=1e-3).identity()["setting ftol"] == 1e-3
 
 
 def test_problems_of_ioh(tmp_path: Path) -> None:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 import logging
 import math
 import os
+import pickle
 import signal
 import subprocess
 import sys
 import textwrap
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -133,35 +135,90 @@ def test_seeds_determine_runs(tmp_path: Path) -> None:
 
 
 def test_stored_runs_are_not_done_again(tmp_path: Path) -> None:
-    calls: list[int] = []
+    calls = tmp_path / "calls"
+    calls.mkdir()
 
     def counted(oracle: driftless.Oracle, rng: Rng, *, step: float = 0.1) -> None:
-        calls.append(1)
+        (calls / f"{time.monotonic_ns()}").touch()
         oracle(oracle.lower)
+
+    def count() -> int:
+        return len(list(calls.iterdir()))
 
     solver = driftless.optimiser("counted")(counted)
     race(solver, tmp_path, seeds=3)
     race(solver, tmp_path, seeds=3)
-    assert len(calls) == 3
+    assert count() == 3
     race(solver, tmp_path, seeds=5)
-    assert len(calls) == 5
+    assert count() == 5
     race(solver.replace(step=0.2), tmp_path, seeds=5)
-    assert len(calls) == 10
+    assert count() == 10
     race(solver, tmp_path, seeds=5, fresh=True)
-    assert len(calls) == 15
+    assert count() == 15
     race(solver.replace(version=2), tmp_path, seeds=2)
-    assert len(calls) == 17
+    assert count() == 17
 
 
-def test_an_edited_function_is_another() -> None:
-    def of(code: str) -> str:
-        scope: dict[str, object] = {"__name__": "mine", "driftless": driftless}
-        exec(compile(textwrap.dedent(code), "<mine>", "exec"), scope)
-        return str(scope["f"].identity()["source"])  # type: ignore[attr-defined]
+def code_of(text: str, name: str = "f") -> str:
+    """What tells a function of a text from others."""
+    scope: dict[str, object] = {"__name__": "mine", "driftless": driftless, "np": np, "functools": functools}
+    exec(compile(textwrap.dedent(text), "<mine>", "exec"), scope)
+    found = scope[name]
+    if not isinstance(found, driftless.Optimiser):
+        found = driftless.Optimiser("f", found)  # type: ignore[arg-type]
+    return str(found.identity()["code"])
 
-    base = "STEP = 0.1\ndef helper(x): return STEP * x\n@driftless.optimiser\ndef f(oracle, rng): helper(1)\n"
-    assert of(base) == of(base)
-    assert len({of(base), of(base.replace("0.1", "0.2")), of(base.replace("STEP * x", "x")), of(base.replace("helper(1)", "helper(2)"))}) == 4
+
+@pytest.mark.parametrize(
+    ("text", "edit"),
+    [
+        ("def f(o, r): return 1", ("1", "2")),
+        ("def f(o, r, k=1): return k", ("k=1", "k=2")),
+        ("STEP = 0.1\ndef f(o, r): return STEP", ("0.1", "0.2")),
+        ("STEP = np.float32(1)\ndef f(o, r): return STEP", ("(1)", "(2)")),
+        ("DATA = np.zeros(3000)\nDATA[1500] = 1\ndef f(o, r): return DATA", ("= 1", "= 2")),
+        ("DATA = {'a': [1, 2]}\ndef f(o, r): return DATA", ("2]", "3]")),
+        ("DATA = {1, 2, 3}\ndef f(o, r): return DATA", ("3}", "4}")),
+        ("def g(): return 1\ndef f(o, r): return g()", ("1", "2")),
+        ("def g(a): return 1\nh = functools.partial(g, 1)\ndef f(o, r): return h()", ("g, 1", "g, 2")),
+        ("def g(a): return 1\nh = functools.partial(g, 1)\ndef f(o, r): return h()", ("return 1", "return 2")),
+        ("class C:\n  x = 1\ndef f(o, r): return C().x", ("1", "2")),
+        ("class B:\n  def g(self): return 1\nclass C(B): pass\ndef f(o, r): return C().g()", ("1", "2")),
+        ("class C:\n  def __init__(self): self.x = 1\nc = C()\ndef f(o, r): return c.x", ("= 1", "= 2")),
+        ("class C:\n  @property\n  def x(self): return 1\ndef f(o, r): return C().x", ("1", "2")),
+        ("@driftless.problem(lower=0, upper=1, dimension=2)\ndef g(x): return 1\ndef f(o, r): return g(1)", ("1\ndef", "2\ndef")),
+        ("def d(g):\n  @functools.wraps(g)\n  def h(*a): return 1\n  return h\n@d\ndef f(o, r): pass", ("1", "2")),
+        ("def d(k):\n  def e(g):\n    def h(*a): return k\n    return h\n  return e\n@d(1)\ndef f(o, r): pass", ("d(1)", "d(2)")),
+        ("def f(o, r): return np.sin(1)", ("sin", "cos")),
+        ("g = np.sin\ndef f(o, r): return g(1)", ("sin", "cos")),
+        ("def f(o, r): return o.real", ("real", "imag")),
+        ("(base,) = driftless.functions('sphere', 2)\ndef f(o, r): return base(1)", ("sphere", "rastrigin")),
+        ("base = driftless.Task(jerk_limit_deg_s3=60)\ndef f(o, r): return base", ("60", "70")),
+        ("f = lambda o, r: [k for k in (1, 2)]", ("2", "3")),
+    ],
+)  # fmt: skip
+def test_an_edited_function_is_another(text: str, edit: tuple[str, str]) -> None:
+    assert code_of(text) == code_of(text)
+    assert code_of(text) != code_of(text.replace(*edit))
+
+
+def test_what_is_no_edit() -> None:
+    text = "def g(x): return x\ndef f(o, r): return g(1) + 1"
+    assert code_of(text) == code_of("# A remark.\n\n" + text.replace(" + 1", "  +  1  # more"))
+    recursive = "def f(o, r): return f(o, r)"
+    assert code_of(recursive) == code_of(recursive)
+
+
+def test_settings_are_told_apart() -> None:
+    def of(x: object) -> object:
+        return guess.replace(size=x).identity()["setting size"]
+
+    long, other = np.zeros(3000), np.zeros(3000)
+    other[1500] = 1e-12
+    values = [1, 1.5, "1", None, [1], (1,), {"a": 1}, long, other, np.zeros(3), (lambda: 1), (lambda: 2), np.sin, np.cos]
+    assert len({str(type(of(x))) + str(of(x)) for x in values}) == len(values)
+    assert all(of(x) == of(x) for x in values)
+    assert of(np.int64(3)) == 3 and of(True) == 1
 
 
 def test_two_settings_of_one_function(tmp_path: Path) -> None:
@@ -656,8 +713,18 @@ def fail(oracle, rng):
     raise ValueError("not mine")
 
 @driftless.optimiser
-def slopes(oracle, rng):
-    assert oracle.has_subgradient
+def slopes(oracle, rng, *, nothing=None):
+    assert oracle.has_subgradient and oracle.has_linearise and nothing is None
+    found = oracle.linearise(oracle.upper / 3)
+    assert found.cost == sum(
+        term.weight * {"norm": np.linalg.norm, "max": np.max}[term.shape](term.values) for term in found.terms
+    ) and all(term.gradients.shape == (len(term.values), oracle.dimension) for term in found.terms)
+    for wrong in (["1"] * oracle.dimension, np.zeros(oracle.dimension, complex)):
+        try:
+            oracle(wrong)
+        except TypeError:
+            continue
+        raise AssertionError("no error")
     while True:
         cost, found = oracle.subgradient(rng.uniform(oracle.lower, oracle.upper))
         assert found.shape == (oracle.dimension,)
@@ -682,6 +749,12 @@ def test_functions_run_in_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     same = driftless.run(
         problems=problems, optimisers=entrants[:2], isolation="process", seeds=2, budget=100, out=tmp_path / "there", progress=False
     )
+    # Another version is another optimiser; slopes and terms are there as in a thread.
+    versions = driftless.run(
+        problems=problems, optimisers=[solvers.guess, solvers.guess.replace(version=2, label="two")], isolation="process",
+        seeds=1, budget=20, out=tmp_path / "versions", progress=False,
+    )  # fmt: skip
+    assert versions.stored == 2
     # One function searches alike in either place.
     assert same.table("runs")["best f"].to_list() == here.table("runs")["best f"].to_list()
     with pytest.raises(ValueError, match="expected a function at the top level of a file"):
@@ -697,6 +770,184 @@ def test_programs_of_results_are_not_started_unasked(tmp_path: Path, monkeypatch
     kept = result.path / "experiment.toml"
     with pytest.raises(driftless.InputError, match="which may come from anybody, starts .*pass trust=True"):
         driftless.run(kept, out=result.path, seeds=1, progress=False)
+
+
+def test_a_problem_cannot_ask_its_own_oracle(tmp_path: Path) -> None:
+    kept: list[driftless.Oracle] = []
+    told: list[str] = []
+
+    class Watcher:
+        def __del__(self) -> None:
+            try:
+                kept[0].evaluations  # noqa: B018
+            except driftless.SearchError as error:
+                told.append(str(error))
+
+    @driftless.problem(lower=0, upper=1, dimension=2)
+    def asks(x: np.ndarray) -> float:
+        if kept:
+            Watcher()
+            for question in (lambda: kept[0].remaining, lambda: kept[0].best, lambda: kept[0](x), lambda: kept[0].batch([x])):
+                with pytest.raises(driftless.SearchError, match="a problem cannot ask the oracle that asks it"):
+                    question()
+        return float(x @ x)
+
+    def solver(oracle: driftless.Oracle, rng: Rng) -> None:
+        kept.append(oracle)
+        while True:
+            oracle(rng.random(2))
+
+    one = record(race(solver, tmp_path, problem=asks, budget=20))
+    assert (one["status"], one["evaluations"], len(told)) == ("budget-spent", 20, 20), one["message"]
+
+
+def test_functions_that_only_promise_to_search(tmp_path: Path) -> None:
+    def generator(oracle: driftless.Oracle, rng: Rng) -> Iterator[float]:
+        yield oracle(oracle.lower)
+
+    async def coroutine(oracle: driftless.Oracle, rng: Rng) -> None:
+        oracle(oracle.lower)
+
+    for solver in (generator, coroutine):
+        message = str(record(race(solver, tmp_path / solver.__name__))["message"])
+        assert message.startswith(f"TypeError: the optimiser returned a {solver.__name__}, expected")
+
+
+def test_results_that_are_gone(tmp_path: Path) -> None:
+    result = race(guess, tmp_path)
+    result.path.rename(tmp_path / "elsewhere")
+    for look in (lambda: result.stored, lambda: result.table("summary"), result.report, lambda: result.motion("x")):
+        with pytest.raises(driftless.ResultsError, match="the results in .* are gone: found no experiment.toml there"):
+            look()
+    assert not result.path.exists()
+    assert driftless.open_results(tmp_path / "elsewhere").stored == 1
+
+
+def test_damage_is_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    result = race(guess, tmp_path)
+    (file,) = (result.path / "runs").glob("*.parquet")
+    file.write_bytes(file.read_bytes()[:-100])
+    again = driftless.open_results(result.path)
+    assert again.table("runs").height == 0
+    assert str(file) in caplog.text and "its runs are left out" in caplog.text
+
+
+def test_what_goes_to_other_processes() -> None:
+    for entrant in (guess, guess.replace(size=3, label="three")):
+        same = pickle.loads(pickle.dumps(entrant))
+        assert (repr(same), same.identity(), same.label) == (repr(entrant), entrant.identity(), entrant.label)
+    same = pickle.loads(pickle.dumps(bowl))
+    assert same.identity() == bowl.identity() and same(np.ones(3)) == 3
+    with pytest.raises(ValueError, match="is not at the top level of a module under its own name"):
+        pickle.dumps(driftless.optimiser("local")(lambda oracle, rng: None))
+    assert guess == guess and len({guess, guess.replace(size=3)}) == 2 and bowl == bowl
+
+
+def test_what_is_no_entrant(tmp_path: Path) -> None:
+    def plain(oracle: driftless.Oracle, rng: Rng) -> None: ...
+
+    for optimisers in (plain, [plain], None, [3]):
+        with pytest.raises(TypeError, match="expected a name or an optimiser: decorate functions with `driftless.optimiser`"):
+            driftless.run(problems=bowl, optimisers=optimisers)  # type: ignore[arg-type]
+    for problems in (plain, [plain], "sphere", {"a": 3}):
+        with pytest.raises(TypeError, match="expected a task or a problem: decorate functions with `driftless.problem`"):
+            driftless.run(problems=problems, optimisers=guess)  # type: ignore[arg-type]
+    for keywords in ({"seeds": -1}, {"budget": 0}, {"jobs": -1}, {"seeds": 10**7}):
+        with pytest.raises(ValueError, match=r"found \w+ = -?\d+, expected 1 to"):
+            driftless.run(problems=bowl, optimisers=guess, **keywords)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="found an empty path"):
+        driftless.run(problems=bowl, optimisers=guess, out="")
+    with pytest.raises(ValueError, match='found isolation \'space\', expected "thread" or "process"'):
+        driftless.run(problems=bowl, optimisers="de", isolation="space")
+    with pytest.raises(ValueError, match="found a least cost or a target that is infinite or NaN"):
+        driftless.problem(lower=0, upper=1, dimension=2, least_cost=math.nan)(lambda x: 0.0)
+
+
+def test_a_label_of_one_task(tmp_path: Path) -> None:
+    result = driftless.run(problems={"weak": driftless.Task()}, optimisers=guess, seeds=1, budget=20, out=tmp_path, progress=False)
+    assert result.instances == ("weak",) and result.motion("weak").duration > 0
+
+
+UNGUARDED = """
+import driftless
+
+@driftless.optimiser
+def guess(oracle, rng):
+    while True:
+        oracle(rng.uniform(oracle.lower, oracle.upper))
+
+result = driftless.run(
+    problems=driftless.functions("sphere", dimension=2), optimisers=guess, isolation="process",
+    seeds=1, budget=20, out={out!r}, progress=False,
+)
+print(result.failed)
+"""
+
+
+def test_a_script_without_a_guard_is_refused(tmp_path: Path) -> None:
+    script = tmp_path / "unguarded.py"
+    script.write_text(UNGUARDED.format(out=str(tmp_path / "results")))
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=120)
+    assert done.stdout == "1\n", done.stderr
+    message = str(record(driftless.open_results(tmp_path / "results"))["message"])
+    assert 'write `if __name__ == "__main__":` in front' in message
+    guarded = script.read_text().replace("result = driftless", 'if __name__ == "__main__":\n  result = driftless').replace("print(", "  print(")
+    script.write_text(guarded.replace("/results", "/guarded"))
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=120)
+    assert done.stdout == "0\n", done.stderr
+
+
+@pytest.mark.parametrize("optimiser", ["guess", "'de'", "busy"])
+def test_python_ends_in_the_midst_of_a_run(optimiser: str, tmp_path: Path) -> None:
+    """In a thread that Python does not wait for, and with a solver that never ends."""
+    done = child(
+        "import driftless, threading, time\n"
+        "@driftless.optimiser\n"
+        "def guess(oracle, rng):\n"
+        "    while True: oracle(rng.uniform(oracle.lower, oracle.upper))\n"
+        "@driftless.optimiser\n"
+        "def busy(oracle, rng):\n"
+        "    while True: pass\n"
+        "@driftless.problem(lower=0, upper=1, dimension=2)\n"
+        "def slow(x):\n"
+        "    time.sleep(0.001)\n"
+        "    return float(x @ x)\n"
+        f"work = lambda: driftless.run(problems=slow, optimisers={optimiser}, seeds=100, budget=10**6, out={str(tmp_path)!r}, progress=False)\n"
+        "threading.Thread(target=work, daemon=True).start()\n"
+        "time.sleep(1)\n"
+        "print('end')\n"
+    )
+    assert (done.returncode, done.stdout) == (0, "end\n"), done.stderr
+
+
+def test_ctrl_c_within_a_large_batch(tmp_path: Path) -> None:
+    began = time.monotonic()
+    done = child(
+        "import os, signal, threading, time, driftless\n"
+        "@driftless.problem(lower=0, upper=1, dimension=2)\n"
+        "def slow(x):\n"
+        "    time.sleep(0.001)\n"
+        "    return float(x @ x)\n"
+        "@driftless.optimiser\n"
+        "def big(oracle, rng): oracle.batch(rng.random((10**6, 2)))\n"
+        "threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
+        f"driftless.run(problems=slow, optimisers=big, seeds=1, budget=10**6, out={str(tmp_path)!r}, progress=False)\n"
+    )
+    assert "KeyboardInterrupt" in done.stderr and time.monotonic() - began < 60
+
+
+def test_the_command_of_the_package(tmp_path: Path) -> None:
+    done = subprocess.run([sys.executable, "-m", "driftless", "plan", "--json", "--budget", "50"], capture_output=True, text=True)
+    assert done.returncode == 0 and '"evaluations": 50' in done.stdout
+    done = subprocess.run([sys.executable, "-m", "driftless", "plan", "none.toml"], capture_output=True, text=True)
+    assert done.returncode == 2 and "cannot read none.toml" in done.stderr
+    running = subprocess.Popen(
+        [sys.executable, "-m", "driftless", "run", "--seeds", "500", "--out", str(tmp_path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    time.sleep(3)
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=60)
+    assert running.returncode == 1 and "interrupted" in said and "Traceback" not in said
 
 
 def test_processes_that_fork_have_no_oracle(tmp_path: Path) -> None:
@@ -732,7 +983,7 @@ def test_experiments_that_cannot_be_run(tmp_path: Path) -> None:
         driftless.run(problems=bowl, out=tmp_path)
     with pytest.raises(driftless.InputError, match="cma"):
         driftless.run(problems=bowl, optimisers="cma", out=tmp_path)
-    with pytest.raises(ValueError, match="found seeds = 0, expected 1 or more"):
+    with pytest.raises(ValueError, match="found seeds = 0, expected 1 to 1000000"):
         race(guess, tmp_path, seeds=0)
     for jobs in (0, 1025):
         with pytest.raises(ValueError, match=f"found jobs = {jobs}, expected 1 to 1024"):
