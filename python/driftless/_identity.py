@@ -130,7 +130,7 @@ class _Walk:
     def _add_object(self, thing: Any) -> None:
         self.add(type(thing))
         state = getattr(thing, "__dict__", None)
-        if isinstance(state, dict) and type(thing).__reduce__ is object.__reduce__:
+        if isinstance(state, dict) and state:
             self.add(state)
             return
         try:

@@ -10,6 +10,7 @@ use driftless::reorientation::{
 };
 use driftless::search::Watch;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
 use crate::errors::{self, OrRaise as _};
 use crate::motion::Motion;
@@ -43,6 +44,10 @@ impl Task {
     fn read(path: &str) -> PyResult<Self> {
         let document = Document::read(Path::new(path)).or_raise()?;
         Self::new(path, document.text())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, (String, &str)) {
+        (py.get_type::<Self>(), (self.path(), self.text()))
     }
 
     #[getter]
