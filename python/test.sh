@@ -12,7 +12,9 @@ python=${PYTHON:-python3}
 quiet=(--quiet --disable-pip-version-check)
 [ -x "$folder/venv/bin/python" ] || "$python" -m venv "$folder/venv"
 rm -rf "$folder/wheels"
-"$folder/venv/bin/python" -m pip wheel "${quiet[@]}" --no-deps --wheel-dir "$folder/wheels" ./python
+# Within the workspace's folder for builds, so that only what has changed is compiled.
+CARGO_TARGET_DIR=$(cd "$target" && pwd) MATURIN_PEP517_ARGS=--locked \
+    "$folder/venv/bin/python" -m pip wheel "${quiet[@]}" --no-deps --wheel-dir "$folder/wheels" ./python
 wheel=$(echo "$folder"/wheels/driftless-*.whl)
 "$folder/venv/bin/python" -m pip install "${quiet[@]}" --force-reinstall --no-deps "$wheel"
 "$folder/venv/bin/python" -m pip install "${quiet[@]}" "$wheel[test]"

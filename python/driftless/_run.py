@@ -11,14 +11,14 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import polars as pl
 
 from . import _driftless
 from ._driftless import Problem
-from ._errors import InputError
+from ._errors import InputError, ResultsError
 from ._field import Builtin, Function, Optimiser, external_table
 from ._motion import Motion
 from ._progress import Progress
@@ -91,6 +91,7 @@ class Result:
     def __init__(self, core: _driftless.Results) -> None:
         self._core = core
         self._reported: tuple[Path, list[tuple[str, str]]] | None = None
+        self._kept: int | None = None
 
     @property
     def path(self) -> Path:
@@ -190,8 +191,9 @@ class Result:
             The page.
         """
         told = self._core.report(None if out is None else os.fspath(out), replace)
-        if told["kept"] is not None:
-            _log.warning("%s shows %d runs, more than are stored, and was left as it was", told["page"], told["kept"])
+        self._kept = told["kept"]
+        if self._kept is not None:
+            _log.warning("%s shows %d runs, more than are stored, and was left as it was", told["page"], self._kept)
         page = Path(told["page"])
         self._reported = page, [(str(question), str(answer)) for question, answer in told["findings"]]
         return page
@@ -203,8 +205,18 @@ class Result:
 
     @property
     def figures(self) -> Figures:
-        """The figures of the report, by name. The report is written first, unless this result has written it before."""
-        return Figures(self._report()[0].parent / "figures")
+        """The figures of the report, by name. The report is written first, unless this result has written it before.
+
+        Raises
+        ------
+        ResultsError
+            A report of more runs was left as it was, and its figures are not these.
+        """
+        page = self._report()[0]
+        if self._kept is not None:
+            hint = "`report(replace=True)` replaces it, `report(out)` puts the report elsewhere"
+            raise ResultsError(f"{page} shows {self._kept} runs, more than are stored, and so do its figures; {hint}")
+        return Figures(page.parent / "figures")
 
     def _report(self) -> tuple[Path, list[tuple[str, str]]]:
         if self._reported is None:
@@ -220,8 +232,7 @@ class Result:
         return f"<driftless.Result {self.name}: {self.stored} of {self.planned} runs{failed}, in {self.path}>"
 
     def _repr_html_(self) -> str:
-        answers = "".join(f"<p><b>{html.escape(q)}</b> {html.escape(a)}</p>" for q, a in self.findings)
-        return f"<p>{html.escape(repr(self)[1:-1])}</p>{self.table('summary')._repr_html_()}{answers}"
+        return f"<p>{html.escape(repr(self)[1:-1])}</p>{self.table('summary')._repr_html_()}"
 
 
 def open_results(path: str | os.PathLike[str]) -> Result:
@@ -370,8 +381,8 @@ class _Watched:
 
 
 def _entrants(optimisers: Any) -> list[_Entrant]:
-    one = isinstance(optimisers, (str, Optimiser, Builtin)) or callable(optimisers) or optimisers is None
-    entrants = [optimisers] if one else list(optimisers)
+    is_one = isinstance(optimisers, (str, Optimiser, Builtin)) or not hasattr(optimisers, "__iter__")
+    entrants: list[Any] = [optimisers] if is_one else list(cast(Iterable[Any], optimisers))
     for entrant in entrants:
         if not isinstance(entrant, (str, Optimiser, Builtin)):
             what = getattr(entrant, "__name__", repr(entrant))
@@ -379,11 +390,12 @@ def _entrants(optimisers: Any) -> list[_Entrant]:
     return entrants
 
 
-def _labelled(problems: _Minimised | Sequence[_Minimised] | Mapping[str, _Minimised]) -> dict[str, _Minimised]:
+def _labelled(problems: Any) -> dict[str, _Minimised]:
     if isinstance(problems, Mapping):
         _check_problems(problems.values())
         return dict(problems)
-    all_ = list(problems) if isinstance(problems, Iterable) and not isinstance(problems, str) else [problems]
+    is_one = isinstance(problems, str) or not hasattr(problems, "__iter__")
+    all_: list[Any] = [problems] if is_one else list(problems)
     _check_problems(all_)
     labelled: dict[str, _Minimised] = {}
     for one in all_:

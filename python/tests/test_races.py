@@ -823,6 +823,25 @@ def test_results_that_are_gone(tmp_path: Path) -> None:
     assert driftless.open_results(tmp_path / "elsewhere").stored == 1
 
 
+def test_figures_are_of_the_result_itself(tmp_path: Path) -> None:
+    race(guess, tmp_path, seeds=3).report()
+    fewer = race(guess, tmp_path, seeds=2)
+    with pytest.raises(driftless.ResultsError, match=r"shows 3 runs, more than are stored.*`report\(replace=True\)` replaces it"):
+        fewer.figures  # noqa: B018
+    fewer.report(replace=True)
+    assert "final-costs" in fewer.figures
+    other = race(guess, tmp_path, seeds=1)
+    other.report(tmp_path / "elsewhere")
+    assert other.figures["final-costs"].svg.parent == tmp_path / "elsewhere" / "figures"
+
+
+def test_showing_a_result_writes_nothing(tmp_path: Path) -> None:
+    result = driftless.open_results(race(guess, tmp_path).path)
+    before = sorted(result.path.rglob("*"))
+    assert "dataframe" in result._repr_html_() and result.table("summary").height == 1
+    assert sorted(result.path.rglob("*")) == before
+
+
 def test_damage_is_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     result = race(guess, tmp_path)
     (file,) = (result.path / "runs").glob("*.parquet")
