@@ -25,6 +25,7 @@ DRIFTLESS=$(cd "$target/release" && pwd)/driftless
 export DRIFTLESS OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=agg
 
 # The tests are of what is installed, not of what stands beside them.
+rm -rf "$folder/tests"
 cp -r python/tests python/pyproject.toml docs/python.md "$folder/"
 cd "$folder"
 venv/bin/python -m pytest --quiet tests python.md --pyargs driftless

@@ -84,3 +84,8 @@ class BudgetSpent(BaseException):
 
 class Interrupted(BaseException):
     """The end of a search: the user has interrupted the experiment."""
+
+
+for _name in __all__:
+    # As users know them.
+    globals()[_name].__module__ = "driftless"

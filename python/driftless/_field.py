@@ -89,7 +89,7 @@ class Optimiser:
         own = {f.name for f in dataclasses.fields(self)}
         settings = {key: x for key, x in changes.items() if key not in own}
         changes = {key: x for key, x in changes.items() if key in own}
-        changes.setdefault("settings", {**self.settings, **settings})
+        changes["settings"] = {**changes.get("settings", self.settings), **settings}
         return dataclasses.replace(self, **changes)
 
     def all_settings(self) -> dict[str, Any]:
@@ -252,14 +252,14 @@ class Function:
     upper: NDArray[np.float64]
     batched: bool = False
     least_cost: float | None = None
-    targets: float | Sequence[float] = ()
+    targets: tuple[float, ...] = ()
     version: int | str = 1
 
     def __post_init__(self) -> None:
         lower, upper = np.array(self.lower, dtype=float), np.array(self.upper, dtype=float)
         if lower.ndim != 1 or lower.shape != upper.shape:
             raise ValueError(f"found bounds of shape {lower.shape} and {upper.shape}, expected (n,)")
-        targets = tuple(float(target) for target in np.atleast_1d(np.asarray(self.targets, dtype=float)))
+        targets = tuple(map(float, self.targets))
         numbers = [*targets, *([] if self.least_cost is None else [self.least_cost])]
         if not all(math.isfinite(number) for number in numbers):
             raise ValueError("found a least cost or a target that is infinite or NaN, expected numbers")
@@ -325,10 +325,11 @@ def problem(
     if len(shape) != 1:
         raise ValueError(f"found bounds of shape {shape}, expected (n,)")
     low, up = np.broadcast_to(low, shape).copy(), np.broadcast_to(up, shape).copy()
+    asked = tuple(float(target) for target in np.atleast_1d(np.asarray(targets, dtype=float)))
 
     def decorate(function: _Cost) -> Function:
         own = name or str(getattr(function, "__name__", "problem"))
-        return Function(own, function, low, up, batched, least_cost, targets, version)
+        return Function(own, function, low, up, batched, least_cost, asked, version)
 
     return decorate
 

@@ -164,7 +164,5 @@ def told(x: Any) -> int | float | str | None:
     if isinstance(x, (int, float, str, type(None))):
         return x
     if isinstance(x, Callable):  # type: ignore[arg-type]
-        walk = _Walk(getattr(x, "__module__", None))
-        walk.add(x)
-        return f"{type(x).__name__}: {walk.hashed.hexdigest()[:16]}"
+        return f"{type(x).__name__}: {digest(x)}"
     return f"{type(x).__name__}: {_alone(x, None)[:16]}"

@@ -13,7 +13,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
-import numpy as np
 import polars as pl
 
 from . import _driftless
@@ -335,14 +334,14 @@ def run(
             'write `if __name__ == "__main__":` in front'
         )
     if isolation not in (None, "thread", "process"):
-        raise ValueError(f'found isolation {isolation!r}, expected "thread" or "process"')
+        raise InputError(f'found isolation {isolation!r}, expected "thread" or "process"')
     entrants = _entrants(optimisers)
     numbers = {"seeds": (seeds, 1_000_000), "budget": (budget, 10**12), "jobs": (jobs, 1024)}
     for what, (number, most) in numbers.items():
         if number is not None and not 1 <= operator.index(number) <= most:
-            raise ValueError(f"found {what} = {number}, expected 1 to {most}")
+            raise InputError(f"found {what} = {number}, expected 1 to {most}")
     if out is not None and not os.fspath(out):
-        raise ValueError("found an empty path, expected a folder for the results")
+        raise InputError("found an empty path, expected a folder for the results")
     if isolation is not None:
         entrants = [e.replace(isolation=isolation) if isinstance(e, Optimiser) else e for e in entrants]
     core = _experiment(experiment, name, _labelled(problems))
@@ -401,7 +400,7 @@ def _labelled(problems: Any) -> dict[str, _Minimised]:
     for one in all_:
         label = one.robot if isinstance(one, Task) else one.name if isinstance(one, Function) else one.label or one.name
         if label in labelled:
-            raise ValueError(f"found two problems {label!r}, expected a mapping with a label for each")
+            raise InputError(f"found two problems {label!r}, expected a mapping with a label for each")
         labelled[label] = one
     return labelled
 
@@ -418,14 +417,14 @@ def _experiment(
 ) -> _driftless.Experiment:
     if path is not None:
         if name is not None:
-            raise ValueError("found a name beside an experiment file, which has one")
+            raise InputError("found a name beside an experiment file, which has one")
         core = _driftless.Experiment.read(os.fspath(path))
         if core.imported is not None:
             raise InputError(f"these results were imported, from {core.imported}, and cannot be run", os.fspath(path))
     else:
         name = name or "python"
         if not problems:
-            raise ValueError("found neither an experiment file nor problems, expected something to minimise")
+            raise InputError("found neither an experiment file nor problems, expected something to minimise")
         (label, only), *others = problems.items()
         if not others and isinstance(only, Task) and label == only.robot:
             # As a file with a task, so that the command can do what is missing, too.
@@ -436,7 +435,7 @@ def _experiment(
         if isinstance(one, Function):
             box = one.lower.tolist(), one.upper.tolist()
             core = core.with_function(
-                label, one.identity(), one.function, one.batched, *box, one.least_cost, list(np.atleast_1d(one.targets))
+                label, one.identity(), one.function, one.batched, *box, one.least_cost, list(one.targets)
             )
         else:
             core = core.with_problem(one.problem() if isinstance(one, Task) else one, label, [])

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from . import _driftless
 from ._driftless import Problem
+from ._errors import InputError
 from ._toml import document
 
 __all__ = ["Task"]
@@ -79,25 +80,32 @@ class Task:
     ) -> None:
         if robot is not None:
             robot = os.path.abspath(robot) if os.path.exists(robot) else os.fspath(robot)
-        text = document(
-            {
-                "task.robot": robot,
-                "task.start.joints_deg": start_joints_deg,
-                "task.start.base_zyx_deg": start_base_zyx_deg,
-                "task.goal.joints_deg": goal_joints_deg,
-                "task.goal.base_zyx_deg": goal_base_zyx_deg,
-                "task.goal.tolerance_deg": tolerance_deg,
-                "task.limits.rate_deg_s": rate_limit_deg_s,
-                "task.limits.acceleration_deg_s2": acceleration_limit_deg_s2,
-                "task.limits.jerk_deg_s3": jerk_limit_deg_s3,
-                "task.weights.base": base_weight,
-                "trajectory.family": family,
-                "trajectory.terms": terms,
-                "trajectory.pieces": pieces,
-                "trajectory.degree": degree,
-            }
-        )
-        self._core, self._home = _driftless.Task("Task", text), "Task"
+        keywords = {
+            "robot": ("task.robot", robot),
+            "start_joints_deg": ("task.start.joints_deg", start_joints_deg),
+            "start_base_zyx_deg": ("task.start.base_zyx_deg", start_base_zyx_deg),
+            "goal_joints_deg": ("task.goal.joints_deg", goal_joints_deg),
+            "goal_base_zyx_deg": ("task.goal.base_zyx_deg", goal_base_zyx_deg),
+            "tolerance_deg": ("task.goal.tolerance_deg", tolerance_deg),
+            "rate_limit_deg_s": ("task.limits.rate_deg_s", rate_limit_deg_s),
+            "acceleration_limit_deg_s2": ("task.limits.acceleration_deg_s2", acceleration_limit_deg_s2),
+            "jerk_limit_deg_s3": ("task.limits.jerk_deg_s3", jerk_limit_deg_s3),
+            "base_weight": ("task.weights.base", base_weight),
+            "family": ("trajectory.family", family),
+            "terms": ("trajectory.terms", terms),
+            "pieces": ("trajectory.pieces", pieces),
+            "degree": ("trajectory.degree", degree),
+        }
+        stated = {name: pair for name, pair in keywords.items() if pair[1] is not None}
+        try:
+            self._core = _driftless.Task("Task", document(dict(stated.values())))
+        except InputError as error:
+            if error.line is None or error.file != "Task":
+                raise
+            # One line per keyword.
+            name = list(stated)[error.line - 1]
+            raise InputError(f"{name}: {error.message}", hint=error.hint) from None
+        self._home = "Task"
 
     @classmethod
     def _of(cls, core: _driftless.Task, home: str) -> Task:

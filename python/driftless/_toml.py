@@ -39,10 +39,10 @@ def _is_bare(key: str) -> bool:
 
 
 def document(keys: Mapping[str, Any]) -> str:
-    """Dotted keys and their values, one per line; those that are None are left out.
+    """Dotted keys and their values, one per line.
 
-    >>> print(document({"task.robot": "iiwa.toml", "task.weights.base": None}))
+    >>> print(document({"task.robot": "iiwa.toml"}))
     task.robot = "iiwa.toml"
     <BLANKLINE>
     """
-    return "".join(f"{key} = {value(x)}\n" for key, x in keys.items() if x is not None)
+    return "".join(f"{key} = {value(x)}\n" for key, x in keys.items())

@@ -23,7 +23,10 @@ def _adapted(name: str, package: str, function: Callable[..., object], **setting
 
 
 def _module(name: str) -> Any:
-    return import_module(name)
+    try:
+        return import_module(name)
+    except ModuleNotFoundError:
+        raise ImportError(f"this needs the package {name}: pip install {name}") from None
 
 
 def scipy(method: str = "COBYQA", **options: Any) -> Optimiser:

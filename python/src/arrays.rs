@@ -1,15 +1,16 @@
 //! Points and numbers between numpy and the library.
 
 use driftless::search::{Bounds, Points};
+use numpy::ndarray::Dimension;
 use numpy::{
-    PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyUntypedArray, PyUntypedArrayMethods,
+    PyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray1,
+    PyReadonlyArray2, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
-/// `numpy.asarray` of what is no array of doubles yet.
+/// An array of doubles, one after the other in memory and aligned, of what is none yet.
 fn as_doubles<'py>(x: &Bound<'py, PyAny>, what: &str) -> PyResult<Bound<'py, PyAny>> {
     static NUMPY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let py = x.py();
@@ -21,7 +22,14 @@ fn as_doubles<'py>(x: &Bound<'py, PyAny>, what: &str) -> PyResult<Bound<'py, PyA
         let message = format!("found {what} of dtype {dtype}, expected real numbers");
         return Err(PyTypeError::new_err(message));
     }
-    numpy.bind(py).call_method1("asarray", (array, "float64"))
+    numpy.bind(py).call_method1("require", (array, "float64", ("C", "A")))
+}
+
+/// Whether numbers lie where numbers of this kind may, as those of a field of a packed structure do not.
+fn is_plain<D: Dimension>(array: &Bound<'_, PyArray<f64, D>>) -> bool {
+    let size = size_of::<f64>().cast_signed();
+    let is_aligned = array.data().is_aligned();
+    is_aligned && array.strides().iter().all(|stride| stride % size == 0)
 }
 
 fn wrong_shape(what: &str, array: &Bound<'_, PyAny>, expected: &str) -> PyErr {
@@ -41,7 +49,8 @@ fn wrong_shape(what: &str, array: &Bound<'_, PyAny>, expected: &str) -> PyErr {
 /// One point.
 pub(crate) fn point(x: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Vec<f64>> {
     let expected = format!("({dimension},)");
-    let array = if let Ok(array) = x.cast::<PyArray1<f64>>() {
+    let array = if let Some(array) = x.cast::<PyArray1<f64>>().ok().filter(|array| is_plain(array))
+    {
         array.clone()
     } else {
         let array = as_doubles(x, "a point")?.cast_into::<PyArray1<f64>>();
@@ -57,7 +66,8 @@ pub(crate) fn point(x: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Vec<f64>
 /// Many points, one per row.
 pub(crate) fn points(x: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Points> {
     let expected = format!("(m, {dimension})");
-    let array = if let Ok(array) = x.cast::<PyArray2<f64>>() {
+    let array = if let Some(array) = x.cast::<PyArray2<f64>>().ok().filter(|array| is_plain(array))
+    {
         array.clone()
     } else {
         let array = as_doubles(x, "points")?.cast_into::<PyArray2<f64>>();

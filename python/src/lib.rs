@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 /// The compiled part of `driftless`.
 #[pymodule]
 mod _driftless {
-    use super::{Bound, PyModule, PyResult, pymodule_init};
+    use super::{Bound, PyModule, PyModuleMethods as _, PyResult};
 
     #[pymodule_export]
     use crate::command;
@@ -39,7 +39,7 @@ mod _driftless {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        pymodule_init(module)
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }
 
@@ -47,8 +47,4 @@ mod _driftless {
 #[pyfunction]
 fn command(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
     py.detach(|| driftless::cli::main_with(arguments))
-}
-
-fn pymodule_init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add("__version__", env!("CARGO_PKG_VERSION"))
 }

@@ -1,12 +1,13 @@
 //! The oracle of a run as a solver in Python sees it.
 
+use std::collections::HashSet;
 use std::ptr::NonNull;
 use std::sync::mpsc::Sender;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
-use driftless::search::{Evaluation, Points, Stop};
+use driftless::search::{Bounds, Evaluation, Points, Stop};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -21,7 +22,7 @@ const PATIENCE: u32 = 1000;
 /// An oracle whose run is not over: what is behind the pointer outlives it, see [`Desk::open`].
 struct Open(NonNull<driftless::search::Oracle<'static>>);
 
-// SAFETY: an oracle may be sent to another thread, which this line would not compile without; see `is_send`.
+// SAFETY: an oracle is `Send`, which the constant below checks.
 unsafe impl Send for Open {}
 
 const fn is_send<T: Send>() {}
@@ -33,10 +34,9 @@ pub(crate) struct Desk {
     /// The thread whose question is being answered: a problem may ask nothing itself.
     asking: Mutex<Option<ThreadId>>,
     /// Told when a solver goes on although its search is over.
-    gone_on: Mutex<Sender<super::solver::Ended>>,
+    gone_on: Sender<super::solver::Ended>,
     process: u32,
-    lower: Vec<f64>,
-    upper: Vec<f64>,
+    bounds: Bounds,
     budget: u64,
     has: [bool; 2],
 }
@@ -47,8 +47,8 @@ struct State {
     oracle: Option<Open>,
     /// Why the search is over, and since when.
     stop: Option<(Stop, Instant)>,
-    /// Whether a solver has learnt of it.
-    is_told: bool,
+    /// The threads that have learnt of it.
+    told: HashSet<ThreadId>,
     /// How often something was asked after that.
     asked_since: u32,
     /// The solver's own thread, and whether the run has gone on without it.
@@ -59,11 +59,27 @@ struct State {
 }
 
 /// Closes a desk when the run is over.
-pub(crate) struct Close<'a>(&'a Desk);
+struct Close<'a>(&'a Desk);
 
 impl Drop for Close<'_> {
     fn drop(&mut self) {
         self.0.lock().oracle = None;
+    }
+}
+
+/// Says whose question is being answered, until it is.
+struct Asked<'a>(&'a Mutex<Option<ThreadId>>);
+
+impl<'a> Asked<'a> {
+    fn by_this_thread(asking: &'a Mutex<Option<ThreadId>>) -> Self {
+        *asking.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread::current().id());
+        Self(asking)
+    }
+}
+
+impl Drop for Asked<'_> {
+    fn drop(&mut self) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
 }
 
@@ -72,28 +88,39 @@ impl Desk {
         oracle: &driftless::search::Oracle<'_>,
         gone_on: Sender<super::solver::Ended>,
     ) -> Self {
-        let side = |side: usize| oracle.bounds().iter().map(|pair| pair[side]).collect();
         Self {
             state: Mutex::default(),
             asking: Mutex::default(),
-            gone_on: Mutex::new(gone_on),
+            gone_on,
             process: std::process::id(),
-            lower: side(0),
-            upper: side(1),
+            bounds: oracle.bounds().clone(),
             budget: oracle.remaining(),
             has: [oracle.has_subgradients(), oracle.has_terms()],
         }
     }
 
-    /// Lets solvers ask an oracle as long as the value that this returns is kept.
-    pub(crate) fn open<'a>(&'a self, oracle: &'a mut driftless::search::Oracle<'_>) -> Close<'a> {
+    /// Lets solvers ask an oracle while something is done.
+    pub(crate) fn open<R>(
+        &self,
+        oracle: &mut driftless::search::Oracle<'_>,
+        work: impl FnOnce() -> R,
+    ) -> R {
         let pointer = NonNull::from(oracle).cast::<driftless::search::Oracle<'static>>();
         self.lock().oracle = Some(Open(pointer));
-        Close(self)
+        let _close = Close(self);
+        work()
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn try_lock(&self) -> Option<MutexGuard<'_, State>> {
+        match self.state.try_lock() {
+            Ok(state) => Some(state),
+            Err(TryLockError::Poisoned(state)) => Some(state.into_inner()),
+            Err(TryLockError::WouldBlock) => None,
+        }
     }
 
     /// Why the search is over, and how many points were outside the box.
@@ -114,13 +141,13 @@ impl Desk {
 
     /// How long the search has been over, where it is.
     pub(crate) fn over_for(&self) -> Option<Duration> {
-        let state = self.state.try_lock().ok()?;
+        let state = self.try_lock()?;
         state.stop.as_ref().map(|(_, since)| since.elapsed())
     }
 
     /// Notices an interruption of a run whose solver asks nothing.
     pub(crate) fn look_for_interruption(&self) {
-        let Ok(mut state) = self.state.try_lock() else { return };
+        let Some(mut state) = self.try_lock() else { return };
         let is_interrupted = state.oracle.as_ref().is_some_and(|oracle| {
             // SAFETY: as in `State::ask`.
             unsafe { oracle.0.as_ref() }.is_interrupted()
@@ -130,8 +157,11 @@ impl Desk {
         }
     }
 
-    /// Whether this thread is not being answered already.
+    /// Whether this thread may ask: it is of this process, and not being answered already.
     fn check_entry(&self) -> PyResult<()> {
+        if self.process != std::process::id() {
+            return Err(errors::closed("this oracle belongs to a run of another process"));
+        }
         let asking = *self.asking.lock().unwrap_or_else(PoisonError::into_inner);
         if asking == Some(thread::current().id()) {
             return Err(errors::search("a problem cannot ask the oracle that asks it"));
@@ -146,19 +176,14 @@ impl Desk {
         is_long: bool,
         question: impl FnOnce(&mut driftless::search::Oracle<'_>, &mut usize) -> Result<R, Stop> + Send,
     ) -> PyResult<Option<R>> {
-        if self.process != std::process::id() {
-            return Err(errors::closed("this oracle belongs to a run of another process"));
-        }
         self.check_entry()?;
         let asking = &self.asking;
         let question = move |oracle: &mut driftless::search::Oracle<'_>, outside: &mut usize| {
-            *asking.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread::current().id());
-            let answer = question(oracle, outside);
-            *asking.lock().unwrap_or_else(PoisonError::into_inner) = None;
-            answer
+            let _asked = Asked::by_this_thread(asking);
+            question(oracle, outside)
         };
         // A thread that has the lock may need Python before it lets go of it, so it is waited for without.
-        let free = if is_long { None } else { self.state.try_lock().ok() };
+        let free = if is_long { None } else { self.try_lock() };
         let answer = match free {
             Some(mut state) => state.ask(question),
             None => py.detach(|| self.lock().ask(question)),
@@ -169,9 +194,7 @@ impl Desk {
             Answer::Over => Ok(None),
             Answer::Ended => Err(errors::closed("the run of this oracle is over")),
             Answer::NeverMind => {
-                let gone_on = self.gone_on.lock().unwrap_or_else(PoisonError::into_inner);
-                let _ = gone_on.send(super::solver::Ended::WentOn);
-                drop(gone_on);
+                let _ = self.gone_on.send(super::solver::Ended::WentOn);
                 py.detach(|| {
                     loop {
                         thread::park();
@@ -205,7 +228,7 @@ impl State {
             return if self.is_left && is_solver { Answer::NeverMind } else { Answer::Ended };
         };
         if let Some((stop, _)) = &self.stop {
-            if !std::mem::replace(&mut self.is_told, true) {
+            if self.told.insert(thread::current().id()) {
                 return Answer::Stopped(stop.clone());
             }
             self.asked_since += 1;
@@ -216,14 +239,14 @@ impl State {
                 (true, false) => Answer::Stopped(stop.clone()),
             };
         }
-        // SAFETY: `Desk::open` borrows the oracle mutably until `Close` is dropped, which takes the pointer away under the lock that
+        // SAFETY: `Desk::open` borrows the oracle mutably until it drops `Close`, which takes the pointer away under the lock that
         // is held here. So the oracle is alive, and nobody else uses it.
         let oracle = unsafe { oracle.0.as_mut() };
         match question(oracle, &mut self.outside) {
             Ok(found) => Answer::Found(found),
             Err(stop) => {
                 self.stop = Some((stop.clone(), Instant::now()));
-                self.is_told = true;
+                self.told.insert(thread::current().id());
                 Answer::Stopped(stop)
             }
         }
@@ -232,14 +255,14 @@ impl State {
 
 /// The only door from an optimiser to its problem: it counts evaluations and keeps the best.
 ///
-/// Once the budget is spent, each question raises `BudgetSpent`. A solver that goes on is told that everything costs infinitely
-/// much, and then left behind. Threads of a solver may share an oracle.
+/// Once the budget is spent, the next question raises `BudgetSpent`. After that every cost is infinite; a solver that goes on asking is
+/// abandoned. Threads of a solver may share an oracle.
 #[pyclass(module = "driftless", frozen)]
 pub(crate) struct Oracle(pub(crate) Arc<Desk>);
 
 impl Oracle {
     fn dimension_of(&self) -> usize {
-        self.0.lower.len()
+        self.0.bounds.len()
     }
 
     fn costs(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Vec<Evaluation>> {
@@ -290,12 +313,6 @@ impl Oracle {
     fn counts(&self, py: Python<'_>) -> PyResult<(u64, u64)> {
         self.look(py, |oracle| (oracle.evaluations(), oracle.remaining()))
     }
-
-    fn bounds(&self) -> driftless::search::Bounds {
-        let pairs = self.0.lower.iter().zip(&self.0.upper).map(|(&l, &u)| [l, u]).collect();
-        driftless::search::Bounds::new(pairs)
-            .unwrap_or_else(|_| driftless::search::Bounds::cube(1, [0.0, 0.0]))
-    }
 }
 
 #[pymethods]
@@ -309,13 +326,13 @@ impl Oracle {
     /// Lower bounds, shape (n,).
     #[getter]
     fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        arrays::vector(py, self.0.lower.clone())
+        arrays::walls(py, &self.0.bounds, 0)
     }
 
     /// Upper bounds, shape (n,).
     #[getter]
     fn upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        arrays::vector(py, self.0.upper.clone())
+        arrays::walls(py, &self.0.bounds, 1)
     }
 
     /// Evaluations that the run may spend.
@@ -388,7 +405,7 @@ impl Oracle {
         x: &Bound<'py, PyAny>,
     ) -> PyResult<(f64, Bound<'py, PyArray1<f64>>)> {
         self.check(0)?;
-        let x = inside(&self.bounds(), x)?;
+        let x = inside(&self.0.bounds, x)?;
         let found = self.0.ask(py, true, |oracle, _| oracle.subgradient(&x))?;
         let found = found.ok_or_else(|| Stop::BudgetSpent.raised())?;
         Ok((found.evaluation.cost, arrays::vector(py, found.slopes.as_slice().to_vec())))
@@ -397,13 +414,13 @@ impl Oracle {
     /// The cost of a point within the box as a sum of terms: one evaluation.
     fn linearise(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Linearisation> {
         self.check(1)?;
-        let x = inside(&self.bounds(), x)?;
+        let x = inside(&self.0.bounds, x)?;
         let found = self.0.ask(py, true, |oracle, _| oracle.linearise(&x))?;
         Linearisation::of(py, &found.ok_or_else(|| Stop::BudgetSpent.raised())?, x.len())
     }
 
-    fn _enter(&self) {
-        self.0.enter();
+    fn _enter(&self, py: Python<'_>) {
+        py.detach(|| self.0.enter());
     }
 
     fn __repr__(&self) -> String {

@@ -1,7 +1,7 @@
 //! Optimisers and problems that are functions in Python.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -37,15 +37,14 @@ pub(crate) enum Ended {
 
 /// What a solver's thread calls when it has ended.
 #[pyclass(frozen)]
-struct Tell(Mutex<Sender<Ended>>);
+struct Tell(Sender<Ended>);
 
 #[pymethods]
 impl Tell {
     fn __call__(&self, py: Python<'_>, error: Option<&Bound<'_, PyAny>>) {
         let ended = error.map_or(Ok(()), |error| Err(told(py, &PyErr::from_value(error.clone()))));
-        let sender = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         // The run may have gone on without its solver.
-        let _ = sender.send(Ended::Returned(ended));
+        let _ = self.0.send(Ended::Returned(ended));
     }
 }
 
@@ -56,7 +55,7 @@ impl PythonOptimiser {
             let start = || -> PyResult<()> {
                 let oracle = Py::new(py, Oracle(desk.clone()))?;
                 let rng = py.import("numpy.random")?.call_method1("default_rng", (seed,))?;
-                let tell = Py::new(py, Tell(Mutex::new(sender)))?;
+                let tell = Py::new(py, Tell(sender))?;
                 let arguments = (&self.function, oracle, rng, &self.settings, tell);
                 py.import("driftless._solver")?.call_method1("start", arguments)?;
                 Ok(())
@@ -64,6 +63,24 @@ impl PythonOptimiser {
             start().map_err(|error| Failure::new(told(py, &error)))
         })
     }
+}
+
+/// Waits for a solver to end; what it told, unless it is left behind.
+fn wait(desk: &Desk, receiver: &Receiver<Ended>) -> Option<Result<(), String>> {
+    loop {
+        match receiver.recv_timeout(TICK) {
+            Ok(Ended::Returned(ended)) => return Some(ended),
+            Ok(Ended::WentOn) | Err(RecvTimeoutError::Disconnected) => break,
+            Err(RecvTimeoutError::Timeout) => {
+                desk.look_for_interruption();
+                if desk.over_for().is_some_and(|time| time > GRACE) {
+                    break;
+                }
+            }
+        }
+    }
+    desk.leave();
+    None
 }
 
 impl Optimiser for PythonOptimiser {
@@ -75,24 +92,10 @@ impl Optimiser for PythonOptimiser {
         let (sender, receiver) = channel();
         let desk = Arc::new(Desk::new(oracle, sender.clone()));
         let seed = rng.seed();
-        let open = desk.open(oracle);
-        self.start(&desk, seed, sender)?;
-        let returned = loop {
-            match receiver.recv_timeout(TICK) {
-                Ok(Ended::Returned(ended)) => break Some(ended),
-                Ok(Ended::WentOn) | Err(RecvTimeoutError::Disconnected) => break None,
-                Err(RecvTimeoutError::Timeout) => {
-                    desk.look_for_interruption();
-                    if desk.over_for().is_some_and(|time| time > GRACE) {
-                        break None;
-                    }
-                }
-            }
-        };
-        if returned.is_none() {
-            desk.leave();
-        }
-        drop(open);
+        let returned = desk.open(oracle, || -> Result<_, Failure> {
+            self.start(&desk, seed, sender)?;
+            Ok(wait(&desk, &receiver))
+        })?;
         let (stop, outside) = desk.outcome();
         oracle.remark_outside(outside);
         if returned.is_none() {

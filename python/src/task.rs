@@ -82,21 +82,6 @@ impl Task {
         self.problem.task().limits.0.clone()
     }
 
-    /// The base's attitude at start and goal, `[w, x, y, z]`.
-    #[getter]
-    fn base(&self) -> [[f64; 4]; 2] {
-        let task = self.problem.task();
-        [&task.start, &task.goal].map(|posture| {
-            let [x, y, z, w] = posture.base.coords.into();
-            [w, x, y, z]
-        })
-    }
-
-    #[getter]
-    fn family(&self) -> &'static str {
-        self.file.trajectory.family().name()
-    }
-
     fn to_toml(&self) -> PyResult<String> {
         let file = self.file.clone().resolved(&self.problem);
         toml::to_string(&file).map_err(|error| errors::usage(&error.to_string()))
@@ -118,14 +103,7 @@ impl Task {
 
     /// The motion with these coefficients, in `duration` seconds or the shortest time within the limits.
     fn motion(&self, coefficients: Vec<f64>, duration: Option<f64>) -> PyResult<Motion> {
-        let problem = match &self.problem {
-            TaskProblem::SinePolynomial(problem, _) => {
-                driftless::reorientation::AnyReorientation::shared(problem)
-            }
-            TaskProblem::Spline(problem, _) => {
-                driftless::reorientation::AnyReorientation::shared(problem)
-            }
-        };
+        let problem = TaskSubject::from(self.problem.clone()).reorientation().shared();
         if coefficients.len() != problem.dimension() {
             let (found, expected) = (coefficients.len(), problem.dimension());
             let message = format!("found {found} coefficients, expected {expected}");

@@ -135,6 +135,11 @@ def test_any_array_of_numbers_will_do() -> None:
     for same in (np.asfortranarray(x), frozen, wide[::2, ::2], x[::-1][::-1], x.tolist(), x.astype(">f8")):
         assert problem.batch(same).tolist() == costs
         assert problem(same[1]) == costs[1]
+    packed = np.zeros((6, 12), [("a", "u1"), ("x", "f8")])
+    packed["x"] = x
+    assert problem.batch(packed["x"]).tolist() == costs and problem(packed["x"][1]) == costs[1]
+    shifted = np.frombuffer(b"." + x.tobytes(), offset=1).reshape(6, 12)
+    assert problem.batch(shifted).tolist() == costs and problem(shifted[1]) == costs[1]
     assert problem.batch(np.zeros((2, 12), int)).tolist() == [problem([0] * 12)] * 2
     assert problem(x[0].astype("f4")) == problem(x[0].astype("f4").astype("f8"))
     assert problem.batch(np.zeros((0, 12))).shape == (0,)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import logging
 import math
@@ -229,6 +230,8 @@ def test_two_settings_of_one_function(tmp_path: Path) -> None:
     assert result.optimisers == ("guess size=8", "guess size=32", "own")
     with pytest.raises(TypeError, match="guess has no setting length"):
         guess.replace(length=3)
+    with pytest.raises(TypeError, match="guess has no setting length"):
+        guess.replace(settings={"size": 3}, length=3)
 
     @driftless.optimiser
     def needy(oracle: driftless.Oracle, rng: Rng, *, size: int) -> None:
@@ -495,6 +498,23 @@ def test_threads_share_an_oracle(tmp_path: Path) -> None:
     for problem in (bowl, driftless.functions("sphere", dimension=3)[0]):
         one = record(race(threads, tmp_path / problem.name, problem=problem, budget=2000))
         assert (one["status"], one["evaluations"], one["message"]) == ("budget-spent", 2000, "")
+
+
+def test_each_thread_learns_of_the_end(tmp_path: Path) -> None:
+    def careless(oracle: driftless.Oracle, rng: Rng) -> None:
+        def work() -> None:
+            with contextlib.suppress(BaseException):
+                while True:
+                    oracle(oracle.lower)
+
+        helper = threading.Thread(target=work)
+        helper.start()
+        helper.join()
+        while True:
+            oracle(oracle.lower)
+
+    one = record(race(careless, tmp_path))
+    assert (one["status"], one["evaluations"], one["message"]) == ("budget-spent", 200, "")
 
 
 def test_a_thread_that_outlives_its_solver(tmp_path: Path) -> None:

@@ -64,8 +64,8 @@ impl Planned {
                 && self.problem.is_held_by_time(&self.coefficients) =>
         {
             format!(
-                "because reaching it costs more time than its weight is worth. Raise `weights.base` above {}, or use \
-                 splines, which always asks for the goal",
+                "because reaching it costs more time than its weight is worth. Raise `weights.base` above {}, or search \
+                 splines, which always aim for the goal",
                 task.base_weight
             )
         }
