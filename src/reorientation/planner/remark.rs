@@ -40,42 +40,42 @@ impl Planned {
             }
         }
         let why = match self.reach {
-        Reach::Reached => return None,
-        Reach::Blocked(Block::NoTurn) => {
-            "and no motion brings it nearer: the joints do not turn the base".to_owned()
-        }
-        Reach::Blocked(Block::Holonomic) => {
-            "and no motion brings it nearer: where the base ends follows from where the joints end, however they go there"
-                .to_owned()
-        }
-        Reach::Blocked(Block::OneAxis) => {
-            "and no motion reaches it: all joints turn the base about the same axis, and the goal is a turn about another"
-                .to_owned()
-        }
-        Reach::TooSlow(seconds) => format!(
-            "which needs about {seconds:.0} s or more, longer than motions that are searched: joints at their largest rates do \
-             not turn the base faster"
-        ),
-        Reach::NotFound if self.interrupted => return None,
-        // Of a search that was cut off it is not known where it would have ended.
-        Reach::NotFound
-            if family == FamilyName::SinePolynomial
-                && self.spent.evaluations < budget
-                && self.problem.is_held_by_time(&self.coefficients) =>
-        {
-            format!(
-                "because reaching it costs more time than its weight is worth. Raise `weights.base` above {}, or search \
-                 splines, which always aim for the goal",
-                task.base_weight
-            )
-        }
-        Reach::NotFound => {
-            let advice = match family {
-                _ if self.spent.evaluations >= budget => "a larger budget may find one",
-                FamilyName::Spline => "another seed or more pieces may find one",
-                FamilyName::SinePolynomial => {
-                    "splines, more terms or another optimiser, such as a hybrid, may find one"
-                }
+            Reach::Reached => return None,
+            Reach::Blocked(Block::NoTurn) => {
+                "and no motion brings it nearer: the joints do not turn the base".to_owned()
+            }
+            Reach::Blocked(Block::Holonomic) => {
+                "and no motion brings it nearer: where the base ends follows from where the joints end, however they go there"
+                    .to_owned()
+            }
+            Reach::Blocked(Block::OneAxis) => {
+                "and no motion reaches it: all joints turn the base about the same axis, and the goal is a turn about another"
+                    .to_owned()
+            }
+            Reach::TooSlow(seconds) => format!(
+                "which needs about {seconds:.0} s or more, longer than motions that are searched: joints at their largest rates do \
+                 not turn the base faster"
+            ),
+            Reach::NotFound if self.interrupted => return None,
+            // Of a search that was cut off it is not known where it would have ended.
+            Reach::NotFound
+                if family == FamilyName::SinePolynomial
+                    && self.spent.evaluations < budget
+                    && self.problem.is_held_by_time(&self.coefficients) =>
+            {
+                format!(
+                    "because reaching it costs more time than its weight is worth. Raise `weights.base` above {}, or search \
+                     splines, which always aim for the goal",
+                    task.base_weight
+                )
+            }
+            Reach::NotFound => {
+                let advice = match family {
+                    _ if self.spent.evaluations >= budget => "a larger budget may find one",
+                    FamilyName::Spline => "another seed or more pieces may find one",
+                    FamilyName::SinePolynomial => {
+                        "splines, more terms or another optimiser, such as a hybrid, may find one"
+                    }
             };
             let missed = if self.assessment.residual_error.is_none_or(f64::is_infinite) {
                 "as far as can be told: the motion swings too often to be evaluated reliably, and no other was found"
