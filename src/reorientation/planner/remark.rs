@@ -76,17 +76,17 @@ impl Planned {
                     FamilyName::SinePolynomial => {
                         "splines, more terms or another optimiser, such as a hybrid, may find one"
                     }
-            };
-            let missed = if self.assessment.residual_error.is_none_or(f64::is_infinite) {
-                "as far as can be told: the motion swings too often to be evaluated reliably, and no other was found"
-            } else if !self.assessment.is_within(task.goal_tolerance) {
-                "and no motion was found that reaches it"
-            } else {
-                "but beyond limits or ranges, and no motion was found that keeps them"
-            };
-            format!("{missed}; {advice}")
-        }
-    };
+                };
+                let missed = if self.assessment.residual_error.is_none_or(f64::is_infinite) {
+                    "as far as can be told: the motion swings too often to be evaluated reliably, and no other was found"
+                } else if !self.assessment.is_within(task.goal_tolerance) {
+                    "and no motion was found that reaches it"
+                } else {
+                    "but beyond limits or ranges, and no motion was found that keeps them"
+                };
+                format!("{missed}; {advice}")
+            }
+        };
         let digits =
             if residual < 1e-3 { format!("{residual:.1e}") } else { format!("{residual:.6}") };
         Some(Remark::Warning(format!("the base ends {digits}° from its goal, {why}")))
