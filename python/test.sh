@@ -22,7 +22,8 @@ wheel=$(echo "$folder"/wheels/driftless-*.whl)
 # The command without Python, which results are compared with.
 cargo build --release --locked
 DRIFTLESS=$(cd "$target/release" && pwd)/driftless
-export DRIFTLESS OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=agg
+DRIFTLESS_REPOSITORY=$PWD
+export DRIFTLESS DRIFTLESS_REPOSITORY OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=agg
 
 # The tests are of what is installed, not of what stands beside them.
 rm -rf "$folder/tests"

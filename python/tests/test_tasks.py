@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import multiprocessing
+import os
 import pickle
 import subprocess
 from pathlib import Path
@@ -16,7 +17,8 @@ import driftless
 
 from .conftest import call, call_json
 
-REPOSITORY = Path(__file__).parents[2]
+# Where robots of the workspace are, for tests that have been copied elsewhere.
+REPOSITORY = Path(os.environ.get("DRIFTLESS_REPOSITORY", Path(__file__).parents[2]))
 
 
 @pytest.mark.parametrize(
