@@ -36,8 +36,15 @@ venv/bin/python -m pyright --pythonpath venv/bin/python "$(venv/bin/python -c 'i
 own=$(venv/bin/python -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 for version in 3.10 3.11 3.12 3.13; do
     [ "$version" = "$own" ] && continue
-    found=$(command -v "python$version" || ls "${PYENV_ROOT:-$HOME/.pyenv}"/versions/"$version".*/bin/python3 2> /dev/null | tail -n 1 || true)
-    if [ -z "$found" ] || ! "$found" -c 'import venv, ensurepip' 2> /dev/null; then
+    found=
+    # What `command` finds may be a shim that starts nothing.
+    for candidate in $(command -v "python$version") "${PYENV_ROOT:-$HOME/.pyenv}"/versions/"$version".*/bin/python3; do
+        if "$candidate" -c 'import venv, ensurepip' > /dev/null 2>&1; then
+            found=$candidate
+            break
+        fi
+    done
+    if [ -z "$found" ]; then
         echo "skipped: there is no Python $version"
         continue
     fi
