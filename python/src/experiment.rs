@@ -58,9 +58,6 @@ fn count(number: u64, what: &str) -> PyResult<NonZeroU64> {
 /// A run that has ended: optimiser, instance, seed, what was found, and what was wrong.
 type Line = (String, String, u64, String, String);
 
-/// Most runs at a time, as for the command.
-const MOST_JOBS: usize = 1024;
-
 /// What is told of runs while they are done.
 #[derive(Default)]
 struct Told(Mutex<Vec<Line>>);
@@ -92,6 +89,13 @@ impl Progress for Teller<'_> {
         if let Ok(mut told) = self.told.0.lock() {
             told.push(line);
         }
+    }
+}
+
+impl Experiment {
+    /// What the same file has become.
+    fn changed(&self, experiment: Read) -> Self {
+        Self { experiment, file: self.file.clone() }
     }
 }
 
@@ -151,22 +155,19 @@ impl Experiment {
     }
 
     fn with_seeds(&self, seeds: u64) -> PyResult<Self> {
-        let experiment = self.experiment.clone().with_seeds(count(seeds, "seeds")?);
-        Ok(Self { experiment, file: self.file.clone() })
+        Ok(self.changed(self.experiment.clone().with_seeds(count(seeds, "seeds")?)))
     }
 
     fn with_budget(&self, evaluations: u64) -> PyResult<Self> {
-        let experiment = self.experiment.clone().with_budget(count(evaluations, "budget")?);
-        Ok(Self { experiment, file: self.file.clone() })
+        Ok(self.changed(self.experiment.clone().with_budget(count(evaluations, "budget")?)))
     }
 
     fn without_optimisers(&self) -> Self {
-        Self { experiment: self.experiment.clone().without_optimisers(), file: self.file.clone() }
+        self.changed(self.experiment.clone().without_optimisers())
     }
 
     fn with_optimisers_of(&self, other: &Self) -> Self {
-        let experiment = self.experiment.clone().with_optimisers_of(&other.experiment);
-        Self { experiment, file: self.file.clone() }
+        self.changed(self.experiment.clone().with_optimisers_of(&other.experiment))
     }
 
     #[expect(clippy::too_many_arguments, reason = "Python calls it with keywords")]
@@ -189,8 +190,7 @@ impl Experiment {
         }
         entrant.seeds = seeds.map(|seeds| count(seeds, "seeds")).transpose()?;
         entrant.budget = budget.map(|budget| count(budget, "budget")).transpose()?;
-        let experiment = self.experiment.clone().with_optimiser(entrant);
-        Ok(Self { experiment, file: self.file.clone() })
+        Ok(self.changed(self.experiment.clone().with_optimiser(entrant)))
     }
 
     #[expect(clippy::too_many_arguments, reason = "Python calls it with keywords")]
@@ -210,14 +210,12 @@ impl Experiment {
         let interrupted = Mutex::default();
         let problem = PythonProblem { function, is_batched, bounds, least_cost, interrupted };
         let instance = Instance::of_problem(name, identity(identity_of)?, problem);
-        let experiment = self.experiment.clone().with_instance(instance.with_targets(targets));
-        Ok(Self { experiment, file: self.file.clone() })
+        Ok(self.changed(self.experiment.clone().with_instance(instance.with_targets(targets))))
     }
 
     fn with_problem(&self, problem: &Problem, label: &str, targets: Vec<f64>) -> Self {
         let instance = Instance::new(label, problem.subject.clone()).with_targets(targets);
-        let experiment = self.experiment.clone().with_instance(instance);
-        Self { experiment, file: self.file.clone() }
+        self.changed(self.experiment.clone().with_instance(instance))
     }
 
     /// Does what is missing; `tick(evaluations, runs)` is called all along, `runs` being those that have ended since.
@@ -230,10 +228,6 @@ impl Experiment {
         begin: &Bound<'_, PyAny>,
         tick: &Bound<'_, PyAny>,
     ) -> PyResult<Results> {
-        if let Some(jobs) = jobs.filter(|jobs| !(1..=MOST_JOBS).contains(jobs)) {
-            let message = format!("found jobs = {jobs}, expected 1 to {MOST_JOBS}");
-            return Err(pyo3::exceptions::PyValueError::new_err(message));
-        }
         let watch = Watch::default();
         // On a thread of its own, too: problems that are functions are asked here, and Ctrl-C is not for them.
         let ready = || -> PyResult<Folder> {

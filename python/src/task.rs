@@ -93,10 +93,7 @@ impl Task {
     }
 
     fn problem(&self, formulation: &str) -> PyResult<Problem> {
-        let origin = Origin::Task {
-            path: self.document.path.display().to_string(),
-            text: self.document.text().to_owned(),
-        };
+        let origin = Origin::Task { path: self.path(), text: self.text().to_owned() };
         let subject = Arc::new(TaskSubject::from(self.problem.clone()));
         Problem::new(subject, formulation, self.robot(), origin)
     }
