@@ -46,6 +46,10 @@ page:
 figures:
     tests/figures/run.sh
 
+# motions of all robots that come with the program, in Pinocchio and MuJoCo; URDF files; needs Python 3.11
+simulators:
+    tests/simulators/run.sh
+
 # the Python package on every version of Python that is found
 python:
     python/test.sh

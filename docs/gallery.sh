@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs the experiments of the gallery and of docs/free-form.md, and copies their pictures and a picture of the page to docs/gallery.
-# Needs `driftless` on the path; the picture of the page needs Python 3.11 or later, PyPI and Chromium, too.
+# Runs the experiments of the gallery and of docs/free-form.md, and copies their pictures, a picture of the page and one of every robot
+# to docs/gallery. Needs `driftless` on the path; the last two need Python 3.11 or later, PyPI and Chromium, too.
 #   docs/gallery.sh [RESULTS]    # folder of the results; what is stored there is not run again
 set -eu
 cd "$(dirname "$0")/.."
@@ -11,6 +11,7 @@ for experiment in default functions poses free-form jerk-sweep weight-sweep term
     pieces valleys reach; do
     driftless run "experiments/$experiment.toml" --out "$results/$experiment" --quiet
 done
+driftless run "$gallery/robots.toml" --out "$results/shipped-robots" --quiet
 
 # SVG where it is small enough for a repository.
 for picture in \
@@ -29,5 +30,6 @@ cp "$results/reach/figures/final-costs.png" "$gallery/reach.png"
 venv=target/gallery/venv
 [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
 "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -r tests/page/requirements.txt pillow==13.0.0
-PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tests/page \
-    "$venv/bin/python" "$gallery/page.py" "$results/default/report.html" "$gallery/page.png"
+export PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tests/page
+"$venv/bin/python" "$gallery/page.py" "$results/default/report.html" "$gallery/page.png"
+"$venv/bin/python" "$gallery/page.py" "$results/shipped-robots/report.html" "$gallery/robots"

@@ -11,13 +11,15 @@ cd "$(dirname "$0")"
 seconds=${1:-120}
 shift || true
 targets=("$@")
-[ $# -gt 0 ] || targets=(robot task replay experiment stored import integrator)
+[ $# -gt 0 ] || targets=(robot task replay trajectory experiment stored import integrator)
 if ! command -v c++ > /dev/null; then
     echo "fuzzing is skipped: there is no C++ compiler"
     exit 0
 fi
 export built=${CARGO_TARGET_DIR:-$PWD/../target}
-RUSTC_WORKSPACE_WRAPPER=$PWD/instrument cargo build --release --locked --package driftless-fuzz --target-dir "$built"
+# With the Python package, which has no binary, dependencies are those that the command and the tests are built with.
+RUSTC_WORKSPACE_WRAPPER=$PWD/instrument cargo build --release --locked --bins \
+    --package driftless-fuzz --package driftless-python --target-dir "$built"
 one() {
     # New inputs go into a folder of their own; those in corpus/ are kept by hand.
     local target=$1 seconds=$2 work=$built/fuzz/$1

@@ -77,12 +77,17 @@ def show(figure: Figure, name: str, alt: str) -> None:
     """Shows a figure at its size in print, and keeps it as `target/notebooks/figures/NAME.pdf`."""
     (WORK / "figures").mkdir(parents=True, exist_ok=True)
     figure.savefig(WORK / "figures" / f"{name}.pdf", metadata={"CreationDate": None})
-    drawn, png = io.BytesIO(), io.BytesIO()
+    drawn = io.BytesIO()
     figure.savefig(drawn, format="png")
+    show_picture(drawn, round(figure.get_figwidth() * 96), alt)
+    plt.close(figure)
+
+
+def show_picture(drawn: Path | io.BytesIO, width: int, alt: str) -> None:
+    """Shows a PNG at this width [px], with fewer colours."""
+    png = io.BytesIO()
     few_colours = PIL.Image.open(drawn).convert("RGB").quantize(
         256, PIL.Image.Quantize.MAXCOVERAGE, dither=PIL.Image.Dither.NONE
     )
     few_colours.save(png, format="png", optimize=True)  # a third of the size
-    width = round(figure.get_figwidth() * 96)
     display(Image(png.getvalue(), width=width, alt=alt))  # type: ignore[no-untyped-call]
-    plt.close(figure)

@@ -17,23 +17,17 @@ CARGO_TARGET_DIR=$(cd "$target" && pwd) MATURIN_PEP517_ARGS=--locked \
     "$folder/venv/bin/python" -m pip wheel "${quiet[@]}" --no-deps --wheel-dir "$folder/wheels" ./python
 wheel=$(echo "$folder"/wheels/driftless-*.whl)
 "$folder/venv/bin/python" -m pip install "${quiet[@]}" --force-reinstall --no-deps "$wheel"
-"$folder/venv/bin/python" -m pip install "${quiet[@]}" "$wheel[test]"
+"$folder/venv/bin/python" -m pip install "${quiet[@]}" "$wheel[test,nevergrad]"
 
 # The command without Python, which results are compared with.
 cargo build --release --locked
 DRIFTLESS=$(cd "$target/release" && pwd)/driftless
-DRIFTLESS_REPOSITORY=$PWD
-export DRIFTLESS DRIFTLESS_REPOSITORY OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=agg
+export DRIFTLESS OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=agg
 
-# The tests are of what is installed, not of what stands beside them.
-rm -rf "$folder/tests"
-cp -r python/tests python/pyproject.toml docs/python.md "$folder/"
-cd "$folder"
-venv/bin/python -m pytest --quiet tests python.md --pyargs driftless
-venv/bin/python -m mypy -p driftless
-venv/bin/python -m pyright --pythonpath venv/bin/python "$(venv/bin/python -c 'import driftless, os; print(os.path.dirname(driftless.__file__))')"
+"$folder/venv/bin/pytest" --quiet python
+(cd python && "$folder/venv/bin/mypy" --cache-dir "$folder/mypy" && "$folder/venv/bin/pyright" --pythonpath "$folder/venv/bin/python")
 
-own=$(venv/bin/python -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+own=$("$folder/venv/bin/python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 for version in 3.10 3.11 3.12 3.13; do
     [ "$version" = "$own" ] && continue
     found=
@@ -49,8 +43,9 @@ for version in 3.10 3.11 3.12 3.13; do
         continue
     fi
     echo "-- Python $version"
-    [ -x "venv-$version/bin/python" ] || "$found" -m venv "venv-$version"
-    "venv-$version/bin/python" -m pip install "${quiet[@]}" --force-reinstall --no-deps "$wheel"
-    "venv-$version/bin/python" -m pip install "${quiet[@]}" "$wheel[plot,pandas]" pytest
-    "venv-$version/bin/python" -m pytest --quiet tests/test_problems.py tests/test_tasks.py tests/test_package.py
+    other=$folder/venv-$version
+    [ -x "$other/bin/python" ] || "$found" -m venv "$other"
+    "$other/bin/python" -m pip install "${quiet[@]}" --force-reinstall --no-deps "$wheel"
+    "$other/bin/python" -m pip install "${quiet[@]}" "$wheel[plot,pandas]" pytest
+    "$other/bin/pytest" --quiet python/tests/test_{problems,tasks,package}.py
 done

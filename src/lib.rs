@@ -89,9 +89,13 @@ pub use registry::registry;
 pub mod analysis;
 #[doc(hidden)]
 pub mod attitude;
+#[doc(hidden)]
+pub mod clearance;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
+#[doc(hidden)]
+pub mod dynamics;
 #[cfg(feature = "harness")]
 #[doc(hidden)]
 pub mod export;

@@ -119,6 +119,12 @@ impl From<Quat<f64>> for UnitQuaternion<f64> {
     }
 }
 
+impl From<UnitQuaternion<f64>> for Quat<f64> {
+    fn from(q: UnitQuaternion<f64>) -> Self {
+        Self { scalar: q.scalar(), vector: Vec3::of(&q.imag()) }
+    }
+}
+
 /// The rotation by `|v|` radians about `v`.
 ///
 /// A series in `|v|²` serves small angles, so that the value and every derivative of it are right

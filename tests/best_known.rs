@@ -70,7 +70,7 @@ fn fingerprints_tell_what_the_optimum_follows_from() {
 #[test]
 fn fingerprints_look_into_the_robot() {
     let folder = tempfile::tempdir().unwrap();
-    let text = include_str!("../src/robot/xiao2023.toml");
+    let text = include_str!("../src/robot/shipped/xiao2023.toml");
     let with_robot = |text: String| {
         std::fs::write(folder.path().join("arm.toml"), text).unwrap();
         let task = folder.path().join("task.toml");

@@ -19,7 +19,7 @@ fn paper(text: &str) -> (Reorientation, Boxes) {
 /// The paper's arm on a base that is so many times as heavy, turning about its first axis by so much.
 fn on_base(times: f64, yaw_deg: f64, more: &str) -> (Reorientation, Boxes) {
     let folder = tempfile::tempdir().unwrap();
-    let robot = include_str!("../src/robot/xiao2023.toml");
+    let robot = include_str!("../src/robot/shipped/xiao2023.toml");
     let mut table: toml::Table = robot.parse().unwrap();
     let base = table["base"].as_table_mut().unwrap();
     let scaled = |value: &toml::Value| {

@@ -199,7 +199,7 @@ fn many_terms_are_searched_from_few() {
 #[test]
 fn more_terms_hasten_what_reached_the_goal() {
     let folder = tempfile::tempdir().unwrap();
-    let robot = include_str!("../src/robot/xiao2023.toml");
+    let robot = include_str!("../src/robot/shipped/xiao2023.toml");
     let inertia = "xx = 75, yy = 74, zz = 74, xy = 0.25, xz = 0.32, yz = 0.19";
     let tenfold = "xx = 750, yy = 740, zz = 740, xy = 2.5, xz = 3.2, yz = 1.9";
     let heavy = robot.replacen("mass = 600", "mass = 6000", 1).replacen(inertia, tenfold, 1);
@@ -220,4 +220,54 @@ fn more_terms_hasten_what_reached_the_goal() {
     assert_eq!(scp.minimise(&mut oracle, &mut Rng::new(1)), Ok(()));
     let (_, motion) = problem.certify(&oracle.best().unwrap().x);
     assert!(motion.cost <= 0.7844, "{}", motion.cost);
+}
+
+/// `Σ x²` with a limit `x_0 ≥ 1`, or without it.
+struct Limited {
+    bounds: Bounds,
+    relaxed: Option<Box<Self>>,
+}
+
+impl Limited {
+    fn new() -> Self {
+        let free = Self { bounds: Bounds::cube(2, [-2.0, 2.0]), relaxed: None };
+        Self { bounds: free.bounds.clone(), relaxed: Some(Box::new(free)) }
+    }
+}
+
+impl Problem for Limited {
+    fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
+        let excess = if self.relaxed.is_some() { (1.0 - x[0]).max(0.0) } else { 0.0 };
+        Ok((x.iter().map(|x| x * x).sum::<f64>() + 10.0 * excess).into())
+    }
+
+    fn relaxed(&self) -> Option<&dyn Problem> {
+        self.relaxed.as_deref().map(|relaxed| relaxed as &dyn Problem)
+    }
+}
+
+#[test]
+fn ends_of_a_relaxed_problem_are_starts_and_nothing_found() {
+    let (problem, watch) = (Limited::new(), Watch::default());
+    let mut oracle = Oracle::new(&problem, 20, &watch);
+    let ends = oracle.on_relaxed(|oracle| {
+        oracle.evaluate(&[0.5, 0.5])?;
+        oracle.evaluate(&[0.0, 0.0])?;
+        Ok(oracle.best().cloned().into_iter().collect())
+    });
+    assert_eq!(ends, Ok(vec![vec![0.0, 0.0]]));
+    assert_eq!((oracle.evaluations(), oracle.best().is_none()), (2, true));
+    // A quarter of what is left, rounded down.
+    let ends = oracle.on_relaxed(|oracle| {
+        loop {
+            oracle.evaluate(&[1.0, oracle.remaining() as f64])?;
+        }
+    });
+    assert_eq!((ends, oracle.evaluations()), (Ok(vec![vec![1.0, 1.0]]), 6));
+    oracle.evaluate(&[1.0, 0.0]).unwrap();
+    assert_eq!(oracle.best().unwrap().evaluation.cost, 1.0);
 }

@@ -102,8 +102,9 @@ fn imports_point_downwards_and_stay_in_their_wing() {
 fn the_harness_does_not_name_the_planner() {
     const HARNESS: [&str; 7] =
         ["experiment", "analysis", "plot", "report", "export", "optimiser", "search"];
-    const PLANNER: [&str; 8] = [
+    const PLANNER: [&str; 9] = [
         "task",
+        "dynamics",
         "reorientation",
         "robot",
         "trajectory",

@@ -94,7 +94,7 @@ fn joints_are_where_the_rows_put_them() {
         let robot = arm(count);
         let posture = Posture::of(&robot, &vec![0.0; count], UnitQuaternion::identity());
         let mut pose = robot.mount().isometry();
-        // The table of `robot/xiao2023.toml`.
+        // The table of `robot/shipped/xiao2023.toml`.
         let rows = [
             [0.0, 0.115, 0.0, 90.0],
             [90.0, -0.115, 0.0, 90.0],

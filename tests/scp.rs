@@ -176,7 +176,8 @@ fn brings_the_base_home_when_time_is_free() {
 #[test]
 fn gets_as_near_as_others_where_the_goal_is_out_of_reach() {
     let folder = tempfile::tempdir().unwrap();
-    let robot: Vec<_> = include_str!("../src/robot/xiao2023.toml").split("[[joint]]").collect();
+    let robot: Vec<_> =
+        include_str!("../src/robot/shipped/xiao2023.toml").split("[[joint]]").collect();
     std::fs::write(folder.path().join("arm.toml"), robot[..4].join("[[joint]]")).unwrap();
     let path = folder.path().join("task.toml");
     let text = "[task]\nrobot = 'arm.toml'\n\

@@ -144,10 +144,11 @@ fn limits_and_slopes_are_those_of_the_cost() {
                 x[2] = problem.bounds().iter().nth(2).unwrap()[1];
                 x[3] = problem.bounds().iter().nth(3).unwrap()[1];
             }
-            let (limits, error) = (timed.limits(&x).unwrap(), timed.error(&x).unwrap());
+            let parts = timed.parts(&x).unwrap();
+            let (limits, error) = (&parts.limits, &parts.error);
             assert_eq!(limits.excess > 0.0, far);
             let evaluation = problem.evaluate(&x).unwrap();
-            let cost = timed.weights().cost(&limits, &error);
+            let cost = timed.weights().cost(&parts);
             assert!((cost - evaluation.cost).abs() < 1e-12 * cost, "{cost} {}", evaluation.cost);
             assert!((evaluation.violation - limits.excess).abs() < 1e-14);
             let (duration, h) = (problem.task().assess(&x, None).duration, 1e-6);
@@ -331,7 +332,7 @@ fn a_small_budget_is_shared() {
 
 /// The paper's task with a narrower range of the fourth joint.
 fn narrowed(task: &Task) -> Arc<Task> {
-    let text = include_str!("../src/robot/xiao2023.toml");
+    let text = include_str!("../src/robot/shipped/xiao2023.toml");
     let narrow = text.replace("range_deg = [-170, 170]", "range_deg = [-45, 0]");
     assert_ne!(narrow, text);
     let robot = Robot::from_document(&Document::embedded("narrow", &narrow)).unwrap();

@@ -167,6 +167,53 @@ fn of_splines() {
     assert!(left > 3, "{left}");
 }
 
+/// What tasks may ask for on the way, each narrow enough to be broken.
+const ON_THE_WAY: [&str; 10] = [
+    "limits = { base_turn_deg = 4 }\n",
+    "limits = { base_turn_deg = 19, base_turn_from = 'start' }\n",
+    "limits = { base_cone = [\n\
+     { axis = [0, 0, 1], from = [0.1, 0.2, 1], within_deg = 22 },\n\
+     { axis = [1, 0, 0], from = [0.4, 0.3, 0.5], outside_deg = 35 }] }\n",
+    "limits = { base_rate_deg_s = 0.5 }\n",
+    "limits = { tool_speed_m_s = 0.2 }\n",
+    "limits = { torque_n_m = [40, 60, 50, 20, 3, 1] }\n",
+    "limits = { clearance_m = 0.15 }\n",
+    "[task.keep_out.target]\nshapes = [{ sphere = { centre = [0.9, -1.1, 2.2], radius = 0.3 } }]\n\
+     [task.keep_out.antenna]\nframe = 'base'\n\
+     shapes = [{ box = { centre = [0.5, 0.5, 1.6], size = [0.4, 0.3, 0.6], zyx_deg = [20, 30, 40] } }]\n",
+    "weights = { largest_turn = 0.2 }\n",
+    "weights = { mean_turn = 0.3 }\n",
+];
+
+#[test]
+fn of_what_is_asked_for_on_the_way() {
+    let (mut rng, mut broken) = (Rng::new(4), 0);
+    for asked in ON_THE_WAY {
+        let mut tally = Tally::default();
+        let document = Document::embedded("task", &format!("[task]\n{asked}"));
+        let file = TaskFile::read(&document).unwrap_or_else(|error| panic!("{error:?}"));
+        let (task, boxes) = file.build(&document).unwrap();
+        let task = Arc::new(task);
+        let ends = (&task.task().start.joints, &task.task().goal.joints);
+        let family = Spline::new(ends.0, ends.1, 9, 3);
+        let accuracy = Accuracy { attitude_steps: 24, peak_intervals: 1 };
+        let spline = Arc::new(Reorientation::over(task.task().clone(), family, accuracy));
+        let splines = Formulated::free_form(spline).unwrap();
+        let sines = Formulation::ALL.map(|f| Formulated::new(f, task.clone(), &boxes).unwrap());
+        let [_, scaled, time_free] = &sines;
+        let problems: [&dyn Problem; 3] = [scaled, time_free, &splines];
+        for (k, problem) in problems.into_iter().enumerate() {
+            for share in [0.1, 0.3, 0.5, 0.8] {
+                let x = point(problem, share, &mut rng);
+                tally.check(problem, &x, &format!("{asked}, {k}, {share}"));
+                broken += usize::from(problem.evaluate(&x).unwrap().violation > 0.0);
+            }
+        }
+        tally.end(150);
+    }
+    assert!(broken > 20, "{broken}");
+}
+
 /// One evaluation and one linearisation each, within the budget.
 #[test]
 fn are_counted() {

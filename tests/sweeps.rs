@@ -9,11 +9,14 @@ use driftless::experiment::{
 };
 use driftless::input::Document;
 use driftless::optimiser::{Ending, Scp};
+use driftless::posture::Posture;
 use driftless::registry;
 use driftless::reorientation::{
     AnyReorientation, BestKnown, Formulated, Formulation, TaskFile, TaskSubject,
 };
+use driftless::robot::Shape;
 use driftless::search::{Oracle, Watch};
+use nalgebra::Vector3;
 
 struct Quiet;
 
@@ -201,4 +204,29 @@ fn random_poses_are_within_their_bounds() {
     for (place, kept) in [(0, 0), (1, 1), (2, 2), (3, 100), (4, 101), (5, 102)] {
         assert_eq!(fewer.runs[place].key, plan.runs[kept].key);
     }
+}
+
+/// What is kept out of stands 3 m above where the base's centre of mass is at the start, which follows from the pose.
+#[test]
+fn what_is_kept_out_of_follows_the_pose() {
+    let plan = plan(
+        "name = 'poses'\nseeds = 1\n\
+         [task.keep_out.ball]\nshapes = [{ sphere = { centre = [0, 0, 3], radius = 0.1 } }]\n\
+         [sweep]\nclearance_m = [0.01, 0.02]\n\
+         pose = [{ start.joints_deg = [0, 0, 0, 0, 0, 0] }, { start.joints_deg = [90, 0, 0, 0, 0, 0] }]\n\
+         [[optimiser]]\nrandom = {}\n",
+    );
+    let mut centres = Vec::new();
+    for (instance, least) in plan.instances.iter().zip([0.01, 0.01, 0.02, 0.02]) {
+        let task = task(instance).task();
+        let clearance = task.path.clearance.as_ref().unwrap();
+        assert_eq!(clearance.least, least);
+        let [solid] = clearance.solids() else { panic!("{:?}", clearance.solids()) };
+        let Shape::Capsule { ends: [centre, _], .. } = &solid.shape else { panic!("{solid:?}") };
+        let start = Posture::of(&task.robot, &task.start.joints, task.start.base);
+        let above = centre - Vector3::from(start.position);
+        assert!((above - Vector3::new(0.0, 0.0, 3.0)).norm() < 1e-12, "{above}");
+        centres.push(*centre);
+    }
+    assert!((centres[0] - centres[1]).norm() > 0.01, "{centres:?}");
 }

@@ -2,25 +2,22 @@
 //! (`reference/trees.json`, made by `reference/make_trees.py`), and one way of going through them against
 //! another.
 
+mod drawn;
+
+use drawn::Tree;
 use driftless::kinematics::tool;
 use driftless::momentum::{
     Arm, RateSlopes, base_map, base_twist, generalised_jacobian, total_momentum,
 };
 use driftless::robot::{Axis, Body, Joint, Link, Placement, Robot, Tool};
-use nalgebra::{DMatrix, Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, Matrix3, Rotation3, Unit, Vector3};
 use proptest::prelude::*;
 use serde::Deserialize;
 
 #[derive(Deserialize)]
-struct Reference {
-    trees: Vec<Tree>,
-}
-
-#[derive(Deserialize)]
-struct Tree {
-    base: BaseTable,
-    links: Vec<LinkTable>,
-    tool: Frame,
+struct Case {
+    #[serde(flatten)]
+    tree: Tree,
     positions: Vec<f64>,
     rates: Vec<f64>,
     base_twist: [f64; 6],
@@ -32,69 +29,14 @@ struct Tree {
     rate_by_position: Vec<[f64; 3]>,
 }
 
-#[derive(Deserialize)]
-struct BaseTable {
-    mass: f64,
-    inertia: [[f64; 3]; 3],
-}
-
-#[derive(Deserialize)]
-struct Frame {
-    translation: [f64; 3],
-    rotation: [f64; 4],
-}
-
-#[derive(Deserialize)]
-struct LinkTable {
-    parent: Option<usize>,
-    #[serde(flatten)]
-    frame: Frame,
-    joint: String,
-    axis: [f64; 3],
-    mass: f64,
-    centre_of_mass: [f64; 3],
-    inertia: [[f64; 3]; 3],
-}
-
-impl Frame {
-    fn placement(&self) -> Placement {
-        let [w, x, y, z] = self.rotation;
-        let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
-        Placement::new(self.translation.into(), rotation.to_rotation_matrix())
-    }
-}
-
-fn body(mass: f64, inertia: [[f64; 3]; 3]) -> Body {
-    Body { mass, inertia: Matrix3::from(inertia) }
-}
-
-impl Tree {
+impl Case {
     fn robot(&self) -> Robot {
-        let links = self.links.iter().enumerate().map(|(i, link)| {
-            let direction = Unit::new_normalize(link.axis.into());
-            let axis = Axis { direction, range: [-4.0, 4.0] };
-            Link {
-                name: format!("joint{i}"),
-                parent: link.parent,
-                placement: link.frame.placement(),
-                joint: match link.joint.as_str() {
-                    "revolute" => Joint::Revolute(axis),
-                    "prismatic" => Joint::Prismatic(axis),
-                    _ => Joint::Fixed,
-                },
-                body: body(link.mass, link.inertia),
-                centre_of_mass: link.centre_of_mass.into(),
-            }
-        });
-        let tool = Tool { link: self.links.len().checked_sub(1), placement: self.tool.placement() };
-        let base = body(self.base.mass, self.base.inertia);
-        Robot::new("tree".to_owned(), base, links.collect(), tool).unwrap()
+        self.tree.robot()
     }
 }
 
-fn reference() -> Vec<Tree> {
-    let text = include_str!("reference/trees.json");
-    serde_json::from_str::<Reference>(text).unwrap().trees
+fn reference() -> Vec<Case> {
+    drawn::trees()
 }
 
 /// To 1e-12 of the largest of the values, or of one.
@@ -114,7 +56,7 @@ fn columns(rows: &[Vec<f64>]) -> Vec<f64> {
 fn the_reference_has_trees_of_all_sorts() {
     let trees = reference();
     assert!(trees.len() >= 60);
-    let robots: Vec<Robot> = trees.iter().map(Tree::robot).collect();
+    let robots: Vec<Robot> = trees.iter().map(Case::robot).collect();
     for count in 1..=14 {
         assert!(robots.iter().any(|robot| robot.joint_count() == count), "{count} joints");
     }
@@ -204,7 +146,7 @@ fn tree(rows: &[[f64; 13]]) -> Robot {
         } else {
             Unit::new_normalize(Vector3::new(r[5], r[6], r[7] + 1.5 * r[7].signum()))
         };
-        let axis = Axis { direction, range: [-4.0, 4.0] };
+        let axis = Axis::new(format!("joint{i}"), direction, [-4.0, 4.0]);
         let mass = 6.0 + 5.0 * r[8];
         Link {
             name: String::new(),
@@ -218,12 +160,11 @@ fn tree(rows: &[[f64; 13]]) -> Robot {
                 1 => Joint::Prismatic(axis),
                 _ => Joint::Revolute(axis),
             },
-            body: Body { mass, inertia: Matrix3::from_diagonal_element(0.2 * mass) },
+            body: Body::new(mass, Matrix3::from_diagonal_element(0.2 * mass)),
             centre_of_mass: Vector3::new(r[5], r[6], r[7]) * 0.3,
         }
     });
-    let base =
-        Body { mass: 80.0, inertia: Matrix3::new(9.0, 0.3, -0.2, 0.3, 11.0, 0.4, -0.2, 0.4, 7.0) };
+    let base = Body::new(80.0, Matrix3::new(9.0, 0.3, -0.2, 0.3, 11.0, 0.4, -0.2, 0.4, 7.0));
     let tool = Tool { link: None, placement: Placement::identity() };
     Robot::new("drawn".to_owned(), base, links.collect(), tool).unwrap()
 }
@@ -259,12 +200,12 @@ proptest! {
         rates in prop::collection::vec(-2.0..2.0, 8),
     ) {
         let inertia = Matrix3::from_diagonal(&Vector3::new(0.5, 0.6, 0.4));
-        let axis = Axis { direction: Vector3::z_axis(), range: [-3.0, 3.0] };
+        let axis = Axis::new(String::new(), Vector3::z_axis(), [-3.0, 3.0]);
         let (mut chain, mut split) = (Vec::new(), Vec::new());
         let mut place = Placement::new(Vector3::new(0.4, -0.2, 0.3), Rotation3::from_euler_angles(0.3, -0.9, 1.2));
         for (i, [a, d, alpha, offset, x, y]) in rows.iter().enumerate() {
-            let body = Body { mass: 5.0 + 4.0 * x, inertia };
-            let half = Body { mass: body.mass / 2.0, inertia: inertia / 2.0 };
+            let body = Body::new(5.0 + 4.0 * x, inertia);
+            let half = Body::new(body.mass / 2.0, inertia / 2.0);
             let centre = Vector3::new(*x, *y, 0.1);
             let link = |parent, placement, joint, body, centre_of_mass| Link {
                 name: String::new(), parent, placement, joint, body, centre_of_mass,
@@ -279,7 +220,7 @@ proptest! {
             let half = Body { inertia: turned, ..half };
             split.push(link(Some(2 * i), place.clone(), Joint::Fixed, half, back.coords));
         }
-        let base = Body { mass: 80.0, inertia: Matrix3::from_diagonal_element(9.0) };
+        let base = Body::new(80.0, Matrix3::from_diagonal_element(9.0));
         let n = rows.len();
         let build = |links: Vec<Link>, placement| {
             let tool = Tool { link: links.len().checked_sub(1), placement };

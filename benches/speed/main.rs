@@ -11,6 +11,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
+use driftless::input::Document;
 use driftless::lanes::Width;
 use driftless::optimiser::{De, Optimiser, Pso, RandomSearch, Scp};
 use driftless::reorientation::{
@@ -174,6 +175,50 @@ fn multipliers(problem: &Formulated, x: &[f64]) -> Multipliers {
         parts.terms[term].pieces.iter().take(count).map(|piece| (piece.id, by)).collect()
     };
     Multipliers { terms: vec![weigh(0, 3, 1.0), weigh(1, 8, 0.1)] }
+}
+
+/// Robots with more joints than the paper's, by their tasks. The third is the fourth with two joints locked.
+const ROBOTS: [(&str, &str); 4] = [
+    ("`xiao2023`, 6 joints", "[task]\nrobot = 'xiao2023'"),
+    ("`panda`, 7 joints", "[task]\nrobot = 'panda'"),
+    (
+        "`dual_arm`, 12 joints in two branches",
+        "[task]\nrobot = 'dual_arm'\nlocked = ['left_iiwa_joint_7', 'right_iiwa_joint_7']
+start.joints_deg = [0, 30, 0, -60, 0, 60, 0, 30, 0, -60, 0, 60]
+goal.joints_deg = [20, 40, 10, -70, 10, 50, -20, 40, -10, -70, -10, 50]",
+    ),
+    ("`dual_arm`, 14 joints in two branches", "[task]\nrobot = 'dual_arm'"),
+];
+
+/// An evaluation by the robot's number of joints.
+fn robots() {
+    const COUNT: usize = 1000;
+    let problem = |text: &str| {
+        let document = Document::embedded("task.toml", text);
+        let built = TaskFile::read(&document).and_then(|file| file.build(&document));
+        let (problem, boxes) = built.expect("a task");
+        Formulated::new(Formulation::TimeFree, Arc::new(problem), &boxes).expect("sound boxes")
+    };
+    let problems = ROBOTS.map(|(name, text)| (name, problem(text)));
+    let points = problems.each_ref().map(|(_, problem)| points(problem, COUNT, 1.0));
+    let mut lines = Vec::new();
+    for ((name, problem), points) in problems.iter().zip(&points) {
+        lines.push(Line::new(name, || {
+            let mut sum = 0.0;
+            let time = microseconds(COUNT, || {
+                let _ = problem.evaluate_batch(points, &mut |evaluation| sum += evaluation.cost);
+            });
+            black_box(sum);
+            time
+        }));
+    }
+    take_turns(&mut lines);
+    println!("| one evaluation | microseconds | as a multiple of the first |");
+    println!("|---|---|---|");
+    for line in &lines {
+        println!("| {} | {:.2} | {:.2} |", line.name, line.median(), lines[0].shorter_than(line));
+    }
+    println!();
 }
 
 /// A problem that costs no time, in the box of another: what a run on it takes is the optimiser's.
@@ -375,6 +420,7 @@ fn main() {
     let width = Width::widest();
     println!("{} lanes ({}), one thread, median of {TURNS} turns\n", width.lanes(), width.name());
     evaluations(&paper);
+    robots();
     runs(&paper);
     convex(&paper);
     bound(&paper);

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.polynomial import Polynomial
 
-ROBOT = Path(__file__).parents[2] / "src" / "robot" / "xiao2023.toml"
+ROBOT = Path(__file__).parents[2] / "src" / "robot" / "shipped" / "xiao2023.toml"
 START, GOAL = np.radians([[10, 30, 45, -20, -25, 40], [40, 60, 90, -10, -30, 60]])
 BASE = np.radians([6, 15, 7])
 LIMITS = np.radians([60, 70, 80])

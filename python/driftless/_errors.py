@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import operator
+from collections.abc import Generator, Iterable, Mapping
+from typing import Any
+
 __all__ = [
     "AlreadyThere",
     "BudgetSpent",
@@ -53,6 +58,34 @@ class InputError(Error, ValueError):
         place = ":".join(str(part) for part in (self.file, self.line, self.column) if part)
         hint = f"; {self.hint}" if self.hint else ""
         return f"{place}: {self.message}{hint}" if place else f"{self.message}{hint}"
+
+
+def check_count(what: str, number: Any, most: int, least: int = 1) -> None:
+    """Whether an argument is a whole number within bounds."""
+    try:
+        found = operator.index(number)
+    except TypeError:
+        raise TypeError(f"found {what} = {number!r}, expected a whole number") from None
+    if not least <= found <= most:
+        raise InputError(f"found {what} = {number}, expected {least} to {most}")
+
+
+@contextlib.contextmanager
+def made_text(path: str, lines: Iterable[str], keys: Mapping[str, str] | None = None) -> Generator[None, None, None]:
+    """Has errors about a text that the package has made name what it was made from, instead of a place that no file has.
+
+    `lines` are the names for its lines, the last one for all that follow; `keys` those for its keys.
+    """
+    try:
+        yield
+    except InputError as error:
+        if error.file != path:
+            raise
+        names, message = list(lines), error.message
+        for key, name in (keys or {}).items():
+            message = message.replace(f"`{key}`", f"`{name}`")
+        name = names[min(error.line or 1, len(names)) - 1]
+        raise InputError(f"{name}: {message}", hint=error.hint) from None
 
 
 class ResultsError(Error):

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._identity import digest, told
-from ._toml import value
+from ._toml import document, value
 
 __all__ = ["Builtin", "Function", "Optimiser", "builtin", "optimiser", "problem"]
 
@@ -69,6 +69,7 @@ class Optimiser:
             raise ValueError(f'found isolation {self.isolation!r}, expected "thread" or "process"')
         if self.formulation not in (None, "time-free", "scaled", "raw"):
             raise ValueError(f'found formulation {self.formulation!r}, expected "time-free", "scaled" or "raw"')
+        _check_order(self.name, self.function)
         keywords = _keywords(self.function)
         unknown = set[str]() if keywords is None else set(self.settings) - set(keywords)
         if unknown:
@@ -112,6 +113,13 @@ class Optimiser:
     def __repr__(self) -> str:
         changed = ", ".join(f"{name}={x!r}" for name, x in self.settings.items())
         return f"<driftless.Optimiser {self.label or self.name}{f' ({changed})' if changed else ''}>"
+
+
+def _check_order(name: str, function: _Solver) -> None:
+    """Whether a function takes the oracle first, as far as the names of its parameters tell."""
+    first, second, *_ = [*inspect.signature(function).parameters, "", ""]
+    if first == "rng" or second == "oracle":
+        raise TypeError(f"found {name}({first}, {second}), expected {name}(oracle, rng): the oracle comes first")
 
 
 def _keywords(function: _Solver) -> dict[str, Any] | None:
@@ -206,9 +214,10 @@ class Builtin:
     label: str | None = None
 
     def to_toml(self) -> str:
-        """The table of an experiment file."""
+        """The table of an experiment file, with a line for every setting at its end."""
         label = f"label = {value(self.label)}\n" if self.label else ""
-        return f"\n[[optimiser]]\n{label}{self.name} = {value(self.settings)}\n"
+        settings = {f"{self.name}.{key}": x for key, x in self.settings.items()}
+        return f"\n[[optimiser]]\n{label}{document(settings or {self.name: {}})}"
 
 
 def builtin(name: str, *, label: str | None = None, **settings: Any) -> Builtin:

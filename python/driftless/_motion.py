@@ -33,8 +33,10 @@ class Samples:
         Time since the start [s].
     joints : tuple of str
         The joints' names, from the base outward.
+    units : tuple of str
+        ``"rad"`` of joints that turn, ``"m"`` of joints that slide.
     angle, rate, acceleration, jerk : ndarray, shape (n, joints)
-        Of every joint [rad, rad/s, rad/s², rad/s³].
+        Position of every joint and its derivatives, in its unit and seconds.
     base : ndarray, shape (n, 4)
         The base's attitude as a unit quaternion (w, x, y, z), base axes into inertial axes.
     base_zyx : ndarray, shape (n, 3)
@@ -43,6 +45,7 @@ class Samples:
 
     time: _Array
     joints: tuple[str, ...]
+    units: tuple[str, ...]
     angle: _Array
     rate: _Array
     acceleration: _Array
@@ -61,6 +64,8 @@ class Samples:
         """The samples as a table with one row per time and joint, as `Motion.save` writes it."""
         joints = len(self.joints)
         columns: dict[str, Any] = {"time": np.repeat(self.time, joints), "joint": list(self.joints) * len(self)}
+        if "m" in self.units:
+            columns["unit"] = list(self.units) * len(self)
         for name in ("angle", "rate", "acceleration", "jerk"):
             columns[name] = getattr(self, name).ravel()
         for k, name in enumerate(("base_w", "base_x", "base_y", "base_z")):
@@ -135,13 +140,16 @@ class Motion:
 
     @property
     def coefficients(self) -> _Array:
-        """The motion's coefficients in its family, shape (joints, coefficients per joint)."""
+        """The motion's coefficients in its family, shape (joints that follow no other, coefficients per joint)."""
         return self._core.coefficients
 
     @property
     def peaks(self) -> dict[str, _Array]:
-        """Largest ``rate_deg_s``, ``acceleration_deg_s2`` and ``jerk_deg_s3`` of every joint, shape (joints,)."""
-        return {name: np.array(values) for name, values in self._told["peaks"].items()}
+        """Largest ``rate_deg_s``, ``acceleration_deg_s2`` and ``jerk_deg_s3`` of every joint, shape (joints,).
+
+        Where a joint slides, ``rate``, ``acceleration`` and ``jerk``, in degrees or metres by joint.
+        """
+        return {name: np.array(values) for name, values in self._told["peaks"].items() if name != "unit"}
 
     @property
     def largest_base_turn_deg(self) -> float:
@@ -165,7 +173,7 @@ class Motion:
         Samples
         """
         time, (angle, rate, acceleration, jerk), base, base_zyx = self._core.sample(dt)
-        return Samples(time, self.joints, angle, rate, acceleration, jerk, base, base_zyx)
+        return Samples(time, self.joints, tuple(self._core.units), angle, rate, acceleration, jerk, base, base_zyx)
 
     def to_polars(self, dt: float | None = None) -> pl.DataFrame:
         """The samples as a table with one row per time and joint; `dt` as for `sample`."""

@@ -6,6 +6,7 @@ import logging
 import os
 
 from . import _driftless
+from ._errors import check_count
 from ._motion import Motion
 from ._progress import Progress
 from ._task import Task
@@ -65,6 +66,8 @@ def plan(
     >>> motion.joints[0], motion.sample(0.1).angle.shape[1]
     ('joint1', 6)
     """
+    check_count("seed", seed, 2**64 - 1, least=0)
+    check_count("budget", budget, 2**64 - 1, least=0)
     if task is None:
         task = Task()
     elif not isinstance(task, Task):

@@ -24,17 +24,21 @@ def plot(motion: Motion, dt: float | None) -> Figure:
     from matplotlib.figure import Figure
 
     samples = motion.sample(dt)
-    limits = np.degrees(motion._core.limits)
+    # Joints that slide keep their metres.
+    slides = np.array([unit == "m" for unit in motion._core.units])
+    scale = np.where(slides, 1.0, np.degrees(1.0))
+    limits = np.asarray(motion._core.limits) * scale[:, None]
+    unit = "m" if slides.all() else "° or m" if slides.any() else "°"
     figure = Figure(figsize=(9.0, 8.0), layout="constrained")
     panels = figure.subplots(3, 2, sharex=True).flat
     rows = [
-        ("angle [°]", samples.angle, None),
-        ("rate [°/s]", samples.rate, 0),
-        ("acceleration [°/s²]", samples.acceleration, 1),
-        ("jerk [°/s³]", samples.jerk, 2),
+        (f"{'position' if slides.any() else 'angle'} [{unit}]", samples.angle, None),
+        (f"rate [{unit}/s]", samples.rate, 0),
+        (f"acceleration [{unit}/s²]", samples.acceleration, 1),
+        (f"jerk [{unit}/s³]", samples.jerk, 2),
     ]
     for (label, values, order), axes in zip(rows, panels):
-        for joint, (name, line) in enumerate(zip(samples.joints, np.degrees(values).T)):
+        for joint, (name, line) in enumerate(zip(samples.joints, (values * scale).T)):
             axes.plot(samples.time, line, color=f"C{joint}", label=name)
         if order is not None:
             for limit in sorted(set(limits[:, order])):

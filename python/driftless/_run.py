@@ -5,25 +5,20 @@ from __future__ import annotations
 import html
 import io
 import logging
-import operator
 import os
-import re
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import polars as pl
 
 from . import _driftless
-from ._driftless import Problem
-from ._errors import InputError, ResultsError
-from ._field import Builtin, Function, Optimiser, external_table
+from ._errors import InputError, ResultsError, check_count
+from ._experiment import Entrant, Minimised, apart, check_programs, enter, entrants_of, experiment_of, labelled
+from ._field import Optimiser
 from ._motion import Motion
 from ._progress import Progress
-from ._suites import _FIELD
 from ._task import Task
-from ._toml import value
 
 __all__ = ["Figure", "Figures", "Result", "open_results", "run"]
 
@@ -31,9 +26,6 @@ _log = logging.getLogger("driftless")
 
 # The file or module that a process is loading to take an optimiser from it.
 loading: str | None = None
-
-_Entrant = Optimiser | Builtin | str
-_Minimised = Problem | Function | Task
 
 
 class Figure:
@@ -159,20 +151,19 @@ class Result:
             raise KeyError(f"found no table {name!r}, expected one of {', '.join(captions)}")
         return captions[name]
 
-    def motion(self, instance: str = "") -> Motion:
+    def motion(self, instance: str = "", task: Task | None = None) -> Motion:
         """The best motion of an instance that is a task.
 
         Parameters
         ----------
         instance : str, optional
             The instance's label; the only one without.
+        task : Task, optional
+            The task that the instance is. Results of several tasks do not hold them, so `open_results` needs it; `run` knows them.
         """
         if not instance and len(self.instances) == 1:
             instance = self.instances[0]
-        found = self._core.motion(instance)
-        if found is None:
-            raise KeyError(f"found no motion of {instance!r}, expected one of {self.instances} that is a task")
-        return found
+        return self._core.motion(instance, None if task is None else task._core)
 
     def report(self, out: str | os.PathLike[str] | None = None, *, replace: bool = False) -> Path:
         """Writes tables, figures and a page of all that is stored.
@@ -253,8 +244,8 @@ def open_results(path: str | os.PathLike[str]) -> Result:
 def run(
     experiment: str | os.PathLike[str] | None = None,
     *,
-    optimisers: _Entrant | Sequence[_Entrant] = (),
-    problems: _Minimised | Sequence[_Minimised] | Mapping[str, _Minimised] = (),
+    optimisers: Entrant | Sequence[Entrant] = (),
+    problems: Minimised | Sequence[Minimised] | Mapping[str, Minimised] = (),
     name: str | None = None,
     seeds: int | None = None,
     budget: int | None = None,
@@ -335,22 +326,22 @@ def run(
         )
     if isolation not in (None, "thread", "process"):
         raise InputError(f'found isolation {isolation!r}, expected "thread" or "process"')
-    entrants = _entrants(optimisers)
+    entrants = entrants_of(optimisers)
     numbers = {"seeds": (seeds, 1_000_000), "budget": (budget, 10**12), "jobs": (jobs, 1024)}
     for what, (number, most) in numbers.items():
-        if number is not None and not 1 <= operator.index(number) <= most:
-            raise InputError(f"found {what} = {number}, expected 1 to {most}")
+        if number is not None:
+            check_count(what, number, most)
     if out is not None and not os.fspath(out):
         raise InputError("found an empty path, expected a folder for the results")
     if isolation is not None:
         entrants = [e.replace(isolation=isolation) if isinstance(e, Optimiser) else e for e in entrants]
-    core = _experiment(experiment, name, _labelled(problems))
-    core = _enter(core, _apart(entrants))
+    core = experiment_of(experiment, name, labelled(problems))
+    core = enter(core, apart(entrants))
     if seeds is not None:
         core = core.with_seeds(seeds)
     if budget is not None:
         core = core.with_budget(budget)
-    _check_programs(core, trust)
+    check_programs(core, trust)
     bar = Progress(progress, core.name)
     watched = _Watched(bar)
     again = "all" if fresh else "failed" if retry else None
@@ -377,114 +368,3 @@ class _Watched:
             level = logging.WARNING if message else logging.INFO
             where = f"{optimiser} {instance}".strip()
             _log.log(level, "%s seed %d: %s%s", where, seed, found, f": {message}" if message else "")
-
-
-def _entrants(optimisers: Any) -> list[_Entrant]:
-    is_one = isinstance(optimisers, (str, Optimiser, Builtin)) or not hasattr(optimisers, "__iter__")
-    entrants: list[Any] = [optimisers] if is_one else list(cast(Iterable[Any], optimisers))
-    for entrant in entrants:
-        if not isinstance(entrant, (str, Optimiser, Builtin)):
-            what = getattr(entrant, "__name__", repr(entrant))
-            raise TypeError(f"found {what}, expected a name or an optimiser: decorate functions with `driftless.optimiser`")
-    return entrants
-
-
-def _labelled(problems: Any) -> dict[str, _Minimised]:
-    if isinstance(problems, Mapping):
-        _check_problems(problems.values())
-        return dict(problems)
-    is_one = isinstance(problems, str) or not hasattr(problems, "__iter__")
-    all_: list[Any] = [problems] if is_one else list(problems)
-    _check_problems(all_)
-    labelled: dict[str, _Minimised] = {}
-    for one in all_:
-        label = one.robot if isinstance(one, Task) else one.name if isinstance(one, Function) else one.label or one.name
-        if label in labelled:
-            raise InputError(f"found two problems {label!r}, expected a mapping with a label for each")
-        labelled[label] = one
-    return labelled
-
-
-def _check_problems(problems: Iterable[Any]) -> None:
-    for one in problems:
-        if not isinstance(one, (Problem, Function, Task)):
-            what = getattr(one, "__name__", repr(one))
-            raise TypeError(f"found {what}, expected a task or a problem: decorate functions with `driftless.problem`")
-
-
-def _experiment(
-    path: str | os.PathLike[str] | None, name: str | None, problems: dict[str, _Minimised]
-) -> _driftless.Experiment:
-    if path is not None:
-        if name is not None:
-            raise InputError("found a name beside an experiment file, which has one")
-        core = _driftless.Experiment.read(os.fspath(path))
-        if core.imported is not None:
-            raise InputError(f"these results were imported, from {core.imported}, and cannot be run", os.fspath(path))
-    else:
-        name = name or "python"
-        if not problems:
-            raise InputError("found neither an experiment file nor problems, expected something to minimise")
-        (label, only), *others = problems.items()
-        if not others and isinstance(only, Task) and label == only.robot:
-            # As a file with a task, so that the command can do what is missing, too.
-            text = f"name = {value(name)}\n{only._core.text}{_FIELD}"
-            return _driftless.Experiment.parse(only._core.path, text).without_optimisers()
-        core = _driftless.Experiment(name)
-    for label, one in problems.items():
-        if isinstance(one, Function):
-            box = one.lower.tolist(), one.upper.tolist()
-            core = core.with_function(
-                label, one.identity(), one.function, one.batched, *box, one.least_cost, list(one.targets)
-            )
-        else:
-            core = core.with_problem(one.problem() if isinstance(one, Task) else one, label, [])
-    return core
-
-
-def _apart(entrants: list[_Entrant]) -> list[_Entrant]:
-    """Labels by their settings those functions that have a name more than once."""
-    names = Counter(e.name for e in entrants if isinstance(e, Optimiser) and e.label is None)
-    apart: list[_Entrant] = []
-    for entrant in entrants:
-        if isinstance(entrant, Optimiser) and entrant.label is None and names[entrant.name] > 1:
-            parts = [f"{key}={x}" for key, x in entrant.settings.items()]
-            entrant = entrant.replace(label=" ".join([entrant.name, *parts]))
-        apart.append(entrant)
-    return apart
-
-
-def _enter(core: _driftless.Experiment, entrants: list[_Entrant]) -> _driftless.Experiment:
-    for entrant in entrants:
-        if isinstance(entrant, str):
-            entrant = Builtin(entrant)
-        if isinstance(entrant, Optimiser) and entrant.isolation == "thread":
-            core = core.with_optimiser(
-                entrant.name,
-                entrant.label,
-                entrant.identity(),
-                entrant.function,
-                dict(entrant.settings),
-                entrant.formulation,
-                entrant.needs_derivatives,
-                entrant.seeds,
-                entrant.budget,
-            )
-            continue
-        table = external_table(entrant) if isinstance(entrant, Optimiser) else entrant.to_toml()
-        what = entrant.label or entrant.name
-        if not re.fullmatch(r"[a-z][a-z-]*", entrant.name) and isinstance(entrant, Builtin):
-            raise InputError(f"found no optimiser {entrant.name!r}, expected a name such as 'cma-es'")
-        text = f'name = "field"\n{table}'
-        core = core.with_optimisers_of(_driftless.Experiment.parse(os.path.abspath(what), text))
-    return core
-
-
-def _check_programs(core: _driftless.Experiment, trust: bool) -> None:
-    for program, is_from_results in core.programs:
-        if is_from_results and not trust:
-            raise InputError(
-                f"a file of results, which may come from anybody, starts {program}",
-                hint="look at it, and pass trust=True to start it",
-            )
-        _log.info("this experiment starts %s", program)

@@ -10,8 +10,8 @@ import numpy as np
 
 from . import _driftless
 from ._driftless import Problem
-from ._errors import InputError
-from ._toml import value
+from ._errors import InputError, made_text
+from ._toml import document
 
 __all__ = ["functions", "problems"]
 
@@ -46,13 +46,14 @@ def functions(
     """
     names = [name] if isinstance(name, str) else list(name)
     dimensions = np.atleast_1d(dimension).tolist()
-    table = f"name = {value(names)}\ndimension = {value(dimensions)}\ninstances = {value(instances)}\n"
-    text = f'name = "functions"\n\n[functions]\n{table}{_FIELD}'
-    return _driftless.problems(os.path.abspath("functions"), text, "")
+    keys = {"name": names, "dimension": dimensions, "instances": instances}
+    table = document({f"functions.{key}": x for key, x in keys.items()})
+    with made_text("functions", keys):
+        return _driftless.problems("functions", f'{table}name = "functions"\n{_FIELD}', "")
 
 
 def problems(path: str | os.PathLike[str], formulation: str | None = None) -> list[Problem]:
-    """The problems that an experiment file asks for, one per instance.
+    """The problems that an experiment file asks for, one per instance; in a race they have the file's labels, targets and budgets.
 
     Parameters
     ----------

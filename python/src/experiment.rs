@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use driftless::experiment::{
-    Again, Entrant, Folder, Identity, Instance, Options, Plan, Progress, Record, RunSpec, Value,
+    Again, Entrant, FOUND_NOTHING, Folder, Identity, Instance, Options, Plan, Progress, Record,
+    RunSpec, Value,
 };
 use driftless::input::Document;
 use driftless::registry;
@@ -79,13 +80,11 @@ impl Progress for Teller<'_> {
             }
             _ => format!("nothing found, {}", record.status.name()),
         };
-        let line = (
-            optimiser.label.clone(),
-            instance.label.clone(),
-            run.seed,
-            found,
-            record.message.clone(),
-        );
+        let message = match &*record.message {
+            "" if !record.cost.is_finite() => FOUND_NOTHING.to_owned(),
+            message => message.to_owned(),
+        };
+        let line = (optimiser.label.clone(), instance.label.clone(), run.seed, found, message);
         if let Ok(mut told) = self.told.0.lock() {
             told.push(line);
         }
@@ -213,9 +212,8 @@ impl Experiment {
         Ok(self.changed(self.experiment.clone().with_instance(instance.with_targets(targets))))
     }
 
-    fn with_problem(&self, problem: &Problem, label: &str, targets: Vec<f64>) -> Self {
-        let instance = Instance::new(label, problem.subject.clone()).with_targets(targets);
-        self.changed(self.experiment.clone().with_instance(instance))
+    fn with_problem(&self, problem: &Problem, label: &str) -> Self {
+        self.changed(self.experiment.clone().with_instance(problem.labelled(label)))
     }
 
     /// Does what is missing; `tick(evaluations, runs)` is called all along, `runs` being those that have ended since.
@@ -279,8 +277,7 @@ pub(crate) fn problems<'py>(
     let plan = plan.or_raise()?;
     let problem = |(instance, of): (usize, &Instance)| {
         let origin = Origin::Experiment { path: path.to_owned(), text: text.to_owned(), instance };
-        let subject = of.subject.clone();
-        Py::new(py, Problem::new(subject, formulation, &of.label, origin)?)
+        Py::new(py, Problem::new(of.clone(), formulation, origin)?)
     };
     let all = plan.instances.iter().enumerate().map(problem);
     PyList::new(py, all.collect::<PyResult<Vec<_>>>()?)

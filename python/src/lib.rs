@@ -33,7 +33,7 @@ mod _driftless {
     #[pymodule_export]
     use crate::results::Results;
     #[pymodule_export]
-    use crate::task::{Task, plan};
+    use crate::task::{Task, check_optimiser, plan};
     #[pymodule_export]
     use crate::watched::end;
 

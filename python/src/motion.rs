@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use driftless::reorientation::{
-    AnyReorientation, Assessment, AssessmentJson, Excursions, ExcursionsJson, FoundBy, INTERVALS,
-    MotionFormat, Planned, Reach, Remark, ShapeJson, motion_scene, write_motion,
+    AnyReorientation, Assessment, AssessmentJson, Excursions, ExcursionsJson, FoundBy,
+    MotionFormat, Planned, Reach, Remark, ShapeJson, intervals, motion_scene, write_motion,
 };
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -77,8 +77,8 @@ impl Motion {
                 "tolerance_deg": task.goal_tolerance_deg(),
                 "within_limits": Reach::keeps_limits(&assessment),
             }),
-            json!(AssessmentJson::from(&assessment)),
-            json!(ExcursionsJson::new(&excursions, task)),
+            json!(AssessmentJson::new(&assessment, &task.robot)),
+            json!(ExcursionsJson::new(&excursions, task, &assessment.peaks)),
             json!(ShapeJson::new(&*problem, &coefficients, assessment.duration)),
         ] {
             if let Value::Object(part) = part {
@@ -102,10 +102,10 @@ impl Motion {
     }
 
     fn intervals(&self, dt: Option<f64>) -> PyResult<usize> {
-        let Some(dt) = dt else { return Ok(INTERVALS) };
-        let intervals = (self.assessment.duration / dt).ceil();
-        if dt > 0.0 && (1.0..=MOST_INTERVALS).contains(&intervals) {
-            return Ok(intervals as usize);
+        let Some(dt) = dt else { return Ok(intervals(self.problem.spec())) };
+        let count = (self.assessment.duration / dt).ceil();
+        if dt > 0.0 && (1.0..=MOST_INTERVALS).contains(&count) {
+            return Ok(count as usize);
         }
         let message = format!(
             "found dt = {dt} s, expected a time above zero that divides {:.3} s into {MOST_INTERVALS} parts at most",
@@ -168,6 +168,12 @@ impl Motion {
         self.problem.task().robot.joints().map(|joint| joint.name.to_owned()).collect()
     }
 
+    /// `rad` or `m`, joint by joint.
+    #[getter]
+    fn units(&self) -> Vec<&'static str> {
+        self.problem.task().robot.joints().map(|joint| joint.kind.si_unit()).collect()
+    }
+
     #[getter]
     fn limits(&self) -> Vec<[f64; 3]> {
         self.problem.task().limits.0.clone()
@@ -182,7 +188,7 @@ impl Motion {
 
     #[getter]
     fn coefficients<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.problem.task().robot.joint_count();
+        let rows = self.problem.task().robot.leading_count();
         let columns = self.coefficients.len() / rows;
         arrays::matrix(py, rows, columns, self.coefficients.clone())
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use driftless::experiment::Subject;
+use driftless::experiment::Instance;
 use driftless::reorientation::TaskSubject;
 use driftless::search::{Evaluation, Oracle, Points, Shape, Stop, Watch};
 use numpy::{PyArray1, PyArray2};
@@ -31,20 +31,14 @@ pub(crate) enum Origin {
 #[pyclass(module = "driftless", frozen)]
 pub(crate) struct Problem {
     asked: Arc<dyn driftless::search::Problem>,
-    pub(crate) subject: Arc<dyn Subject>,
-    pub(crate) space: String,
-    label: String,
+    instance: Instance,
+    space: String,
     origin: Origin,
 }
 
 impl Problem {
-    pub(crate) fn new(
-        subject: Arc<dyn Subject>,
-        space: &str,
-        label: &str,
-        origin: Origin,
-    ) -> PyResult<Self> {
-        let spaces = subject.spaces();
+    pub(crate) fn new(instance: Instance, space: &str, origin: Origin) -> PyResult<Self> {
+        let spaces = instance.subject.spaces();
         let space =
             if space.is_empty() { spaces.first().map_or("", String::as_str) } else { space };
         if !(spaces.is_empty() && space.is_empty() || spaces.iter().any(|own| own == space)) {
@@ -57,9 +51,20 @@ impl Problem {
                 "found formulation {space:?}, expected {expected}"
             )));
         }
-        let asked = subject.problem(space).or_raise()?;
-        let (space, label) = (space.to_owned(), label.to_owned());
-        Ok(Self { asked, subject, space, label, origin })
+        let asked = instance.subject.problem(space).or_raise()?;
+        let space = space.to_owned();
+        Ok(Self { asked, instance, space, origin })
+    }
+
+    /// What it is in a race, under a label.
+    pub(crate) fn labelled(&self, label: &str) -> Instance {
+        if label == self.instance.label {
+            return self.instance.clone();
+        }
+        let Instance { subject, targets, budget, .. } = self.instance.clone();
+        let mut instance = Instance::new(label, subject).with_targets(targets);
+        instance.budget = budget;
+        instance
     }
 
     fn dimension(&self) -> usize {
@@ -142,13 +147,13 @@ impl Problem {
     /// What it is called.
     #[getter]
     fn name(&self) -> &str {
-        self.subject.name()
+        self.instance.subject.name()
     }
 
     /// What tells it from others of its experiment; empty where there is but one.
     #[getter]
     fn label(&self) -> &str {
-        &self.label
+        &self.instance.label
     }
 
     /// The variables that it is searched in, where there are several.
@@ -178,7 +183,7 @@ impl Problem {
     /// The least cost that anybody has found.
     #[getter]
     fn best_known(&self) -> Option<f64> {
-        self.subject.known_cost()
+        self.instance.subject.known_cost()
     }
 
     /// Whether there are subgradients.
@@ -279,6 +284,21 @@ impl Problem {
         .map_err(|failure: driftless::search::Failure| failure.raised())
     }
 
+    /// Where the task that it is stands, and its text; none of other problems.
+    #[getter]
+    fn _file(&self) -> Option<(&str, &str)> {
+        match &self.origin {
+            Origin::Task { path, text } => Some((path, text)),
+            Origin::Experiment { .. } => None,
+        }
+    }
+
+    /// Whether its variables are those that its subject is searched in unless an optimiser asks for others.
+    #[getter]
+    fn _is_preferred(&self) -> bool {
+        self.instance.space(None) == self.space
+    }
+
     /// The motion that a point stands for, evaluated finely. Of tasks alone.
     fn motion(&self, py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
         let x = arrays::point(x, self.dimension())?;
@@ -286,8 +306,7 @@ impl Problem {
             let message = format!("found x[{k}] = {}, expected a number", x[k]);
             return Err(pyo3::exceptions::PyValueError::new_err(message));
         }
-        let any = self.subject.as_any().and_then(|any| any.downcast_ref::<TaskSubject>());
-        let task = any
+        let task = TaskSubject::of(&self.instance)
             .ok_or_else(|| errors::usage("the problem is no task, so its points are no motions"))?;
         let coefficients = task.coefficients(&self.space, &x).unwrap_or_default();
         let duration = (self.space != "time-free").then(|| x.last().copied()).flatten();
@@ -317,7 +336,7 @@ impl Problem {
     }
 
     fn __repr__(&self) -> String {
-        let label = if self.label.is_empty() { self.subject.name() } else { &*self.label };
+        let label = if self.label().is_empty() { self.name() } else { self.label() };
         let formulation = self.formulation().map_or_else(String::new, |own| format!(", {own}"));
         format!("<driftless.Problem {label}{formulation}, {} variables>", self.dimension())
     }

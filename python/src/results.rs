@@ -5,15 +5,17 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use driftless::exhibit::Table;
-use driftless::experiment::{Folder, standing};
+use driftless::experiment::{Folder, Instance, Kind as _, Run, Subject as _, standing};
 use driftless::registry;
-use driftless::reorientation::TaskSubject;
+use driftless::reorientation::{ReorientationTask, TaskSubject};
 use driftless::report::{self, Target};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors::{self, OrRaise as _};
 use crate::motion::Motion;
+use crate::task::Task;
 
 /// A folder of results as it was when it was opened.
 #[pyclass(module = "driftless._driftless", frozen)]
@@ -36,6 +38,52 @@ impl Results {
         Err(errors::results(format!(
             "the results in {path} are gone: found no experiment.toml there"
         )))
+    }
+
+    /// The instance of a label. The only one of an experiment has none, and may be called by its robot.
+    fn instance(&self, label: &str) -> PyResult<&Instance> {
+        let all = &self.folder.plan.instances;
+        let is_robot = |only: &Instance| {
+            let task = TaskSubject::of(only).map(|task| task.reorientation().task());
+            task.is_some_and(|task| task.robot.name() == label)
+        };
+        let found = all.iter().find(|instance| instance.label == label);
+        let found = found.or_else(|| all.first().filter(|only| all.len() == 1 && is_robot(only)));
+        found.ok_or_else(|| {
+            let labels: Vec<String> = all.iter().map(|i| format!("{:?}", i.label)).collect();
+            let expected = labels.join(", ");
+            PyKeyError::new_err(format!("found no instance {label:?}, expected one of {expected}"))
+        })
+    }
+
+    /// The task of an instance.
+    fn subject<'a>(
+        &self,
+        of: &'a Instance,
+        given: Option<&'a TaskSubject>,
+    ) -> PyResult<&'a TaskSubject> {
+        let label = &of.label;
+        if let Some(given) = given {
+            if given.identity().to_string() == of.subject.identity().to_string() {
+                return Ok(given);
+            }
+            return Err(errors::usage(&format!("found another task than that of {label:?}")));
+        }
+        TaskSubject::of(of).ok_or_else(|| {
+            if of.subject.kind() == ReorientationTask.name() {
+                return PyKeyError::new_err(format!(
+                    "these results do not hold the task of {label:?}: pass it, as in `motion({label:?}, task)`"
+                ));
+            }
+            let all = self.folder.plan.instances.iter();
+            let tasks = all.filter(|one| one.subject.kind() == ReorientationTask.name());
+            let tasks: Vec<String> = tasks.map(|task| format!("{:?}", task.label)).collect();
+            let tasks = match tasks.as_slice() {
+                [] => String::new(),
+                tasks => format!("; tasks are {}", tasks.join(", ")),
+            };
+            PyKeyError::new_err(format!("{label:?} is no task, and has no motion{tasks}"))
+        })
     }
 
     fn tables(&self, py: Python<'_>) -> PyResult<&[Table]> {
@@ -139,21 +187,28 @@ impl Results {
         Ok(dict)
     }
 
-    /// The best motion of an instance that is a task.
-    fn motion(&self, py: Python<'_>, instance: &str) -> PyResult<Option<Py<PyAny>>> {
+    /// The best motion of an instance that is a task: its own, or where that is not stored the one given.
+    fn motion(&self, py: Python<'_>, label: &str, task: Option<&Task>) -> PyResult<Py<PyAny>> {
         self.check()?;
         let plan = &self.folder.plan;
+        let instance = self.instance(label)?;
+        let given = task.map(Task::subject);
+        let task = self.subject(instance, given.as_ref())?;
         let runs = py.detach(|| driftless::experiment::load(plan, &self.folder.store));
         let runs = runs.or_raise()?;
         let results = plan.results(&runs);
         let best = results.best_runs_with_points().into_iter();
-        let of = |run: &&driftless::experiment::Run| results.instance(run).label == instance;
-        let Some(run) = best.into_iter().find(of) else { return Ok(None) };
-        let Some(task) = TaskSubject::of(results.instance(run)) else { return Ok(None) };
-        let space = results.space(run);
-        let Some(coefficients) = task.coefficients(&space, &run.x) else { return Ok(None) };
-        let duration = (space != "time-free").then(|| run.x.last().copied()).flatten();
+        let of = |run: &&Run| results.instance(run).label == instance.label;
+        let found = best.into_iter().find(of).and_then(|run| {
+            let space = results.space(run);
+            let duration = (space != "time-free").then(|| run.x.last().copied()).flatten();
+            Some((task.coefficients(&space, &run.x)?, duration))
+        });
+        let Some((coefficients, duration)) = found else {
+            let message = format!("found no motion of {label:?}: no run has found any");
+            return Err(PyKeyError::new_err(message));
+        };
         let problem = task.reorientation().shared();
-        Motion::assessed(problem, coefficients, duration, None).shown(py).map(Some)
+        Motion::assessed(problem, coefficients, duration, None).shown(py)
     }
 }

@@ -1,7 +1,6 @@
 //! Tasks, and planning their motions.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use driftless::input::{Document, nearest};
 use driftless::optimiser::Settings;
@@ -28,6 +27,13 @@ pub(crate) struct Task {
 /// The document of a text, which names files from `path`.
 pub(crate) fn document(path: &str, text: &str) -> Document {
     Document::embedded(path, text)
+}
+
+impl Task {
+    /// The task as experiments have it.
+    pub(crate) fn subject(&self) -> TaskSubject {
+        self.problem.clone().into()
+    }
 }
 
 #[pymethods]
@@ -89,18 +95,17 @@ impl Task {
 
     fn formulations(&self) -> Vec<String> {
         use driftless::experiment::Subject as _;
-        TaskSubject::from(self.problem.clone()).spaces()
+        self.subject().spaces()
     }
 
     fn problem(&self, formulation: &str) -> PyResult<Problem> {
         let origin = Origin::Task { path: self.path(), text: self.text().to_owned() };
-        let subject = Arc::new(TaskSubject::from(self.problem.clone()));
-        Problem::new(subject, formulation, self.robot(), origin)
+        Problem::new(self.subject().into_instance(self.robot()), formulation, origin)
     }
 
     /// The motion with these coefficients, in `duration` seconds or the shortest time within the limits.
     fn motion(&self, coefficients: Vec<f64>, duration: Option<f64>) -> PyResult<Motion> {
-        let problem = TaskSubject::from(self.problem.clone()).reorientation().shared();
+        let problem = self.subject().reorientation().shared();
         if coefficients.len() != problem.dimension() {
             let (found, expected) = (coefficients.len(), problem.dimension());
             let message = format!("found {found} coefficients, expected {expected}");
@@ -121,7 +126,7 @@ fn family(name: &str) -> PyResult<FamilyName> {
 }
 
 /// An optimiser of the catalogue with its default settings.
-pub(crate) fn optimiser(name: &str) -> PyResult<Settings> {
+fn optimiser(name: &str) -> PyResult<Settings> {
     Settings::by_name(name).ok_or_else(|| {
         let all = Settings::all();
         let known: Vec<&str> = all.iter().map(Settings::name).collect();
@@ -130,6 +135,12 @@ pub(crate) fn optimiser(name: &str) -> PyResult<Settings> {
         let known = known.join(", ");
         errors::usage(&format!("found no optimiser {name:?}, expected one of {known}{hint}"))
     })
+}
+
+/// Raises an error unless there is an optimiser of this name in the catalogue.
+#[pyfunction]
+pub(crate) fn check_optimiser(name: &str) -> PyResult<()> {
+    optimiser(name).map(drop)
 }
 
 /// Plans the motion of a task.
@@ -167,7 +178,7 @@ pub(crate) fn plan(
         seed,
     });
     let json = serde_json::to_value(&json).unwrap_or_default();
-    let remark = found.remark(budget);
+    let remark = found.remark(budget).or_else(|| found.overlap());
     let text = toml::to_string(planner.file());
     let text = text.map_err(|error| errors::usage(&error.to_string()))?;
     Ok(Motion::planned(found, json, remark, (task.path(), text)))

@@ -9,7 +9,8 @@ from pathlib import Path
 import driftless
 from driftless import _driftless
 
-STUB = ast.parse((Path(inspect.getfile(driftless)).parent / "_driftless.pyi").read_text())
+FOLDER = Path(inspect.getfile(driftless)).parent
+STUB = ast.parse((FOLDER / "_driftless.pyi").read_text())
 
 
 def test_everything_public_is_documented() -> None:
@@ -48,3 +49,7 @@ def test_functions_of_the_extension_are_stubbed() -> None:
 def test_all_names_are_there() -> None:
     assert driftless.__all__ == sorted(driftless.__all__)
     assert all(hasattr(driftless, name) for name in driftless.__all__)
+
+
+def test_types_come_along() -> None:
+    assert (FOLDER / "py.typed").is_file()

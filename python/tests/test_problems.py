@@ -204,8 +204,13 @@ def test_test_functions() -> None:
     assert [(p.name, p.dimension) for p in found][:3] == [("sphere", 3), ("sphere", 3), ("sphere", 5)]
     assert len(found) == 8 and all(p.best_known == 0 for p in found)
     assert found[0].label == "sphere dimension=3 instance=1"
-    with pytest.raises(driftless.InputError, match="sphere"):
-        driftless.functions("spere")
+    for arguments, message in [
+        (("spere",), "name: unknown variant `spere`, .*did you mean `sphere`"),
+        (("sphere", 1), "dimension: found 1, expected a whole number from 2 to 1000"),
+        (("sphere", 3, 0), "instances: found 0, expected a whole number from 1 to 10000"),
+    ]:
+        with pytest.raises(driftless.InputError, match=f"^{message}"):
+            driftless.functions(*arguments)  # type: ignore[arg-type]
     with pytest.raises(driftless.InputError, match="the problem is no task"):
         found[0].motion(found[0].lower)
 

@@ -8,6 +8,7 @@ import logging
 import math
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -23,7 +24,7 @@ import pytest
 
 import driftless
 
-from .conftest import call, child
+from processes import call, child
 
 Rng = np.random.Generator
 
@@ -87,7 +88,10 @@ def test_a_notebook_without_widgets_is_not_warned() -> None:
         assert "tqdm.autonotebook" in sys.modules
     """
     done = child(textwrap.dedent(code))
-    assert (done.returncode, done.stderr) == (0, "")
+    # That the motion passes through the robot is said, and nothing else.
+    assert done.returncode == 0, done.stderr
+    told = [line for line in done.stderr.splitlines() if "passes through the robot" not in line]
+    assert told == []
 
 
 def test_a_race_is_counted_and_reported(tmp_path: Path) -> None:
@@ -261,6 +265,114 @@ def test_formulations_of_functions(tmp_path: Path) -> None:
     entrants = [driftless.optimiser(name, formulation=name)(look) for name in ("time-free", "scaled", "raw")]
     result = driftless.run(problems=driftless.Task(), optimisers=entrants, seeds=1, budget=5, out=tmp_path, progress=False)
     assert seen == {12, 13} and result.optimisers == ("time-free/time-free", "scaled/scaled", "raw/raw")
+
+
+def test_oracles_come_first(tmp_path: Path) -> None:
+    def swapped(rng: Rng, oracle: driftless.Oracle) -> None: ...
+
+    def other(random: Rng, oracle: driftless.Oracle) -> None: ...
+
+    def once(rng: Rng) -> None: ...
+
+    for function in (swapped, other, once):
+        with pytest.raises(TypeError, match=rf"found {function.__name__}\(.*expected {function.__name__}\(oracle, rng\)"):
+            driftless.optimiser(function)
+
+    @driftless.optimiser
+    def own_names(problem: driftless.Oracle, generator: Rng) -> None:
+        problem(problem.lower)
+
+    assert race(own_names, tmp_path).failed == 0
+
+
+@pytest.mark.parametrize("evaluations", [0, 3])
+def test_runs_that_find_nothing_have_failed(evaluations: int, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    def lost(oracle: driftless.Oracle, rng: Rng) -> None:
+        for _ in range(evaluations):
+            oracle.batch([oracle.upper + 1])
+
+    with caplog.at_level(logging.INFO, "driftless"):
+        result = race(lost, tmp_path)
+    assert result.failed == 1 and result.table("summary")["failed"].to_list() == [1]
+    warnings = [entry.getMessage() for entry in caplog.records if entry.levelno == logging.WARNING]
+    assert len(warnings) == 1 and warnings[0].startswith("lost bowl seed 1: nothing found, finished: ")
+    assert evaluations or warnings[0].endswith(": no evaluation had a finite cost")
+
+
+# Tasks and problems of tasks
+
+UR5 = Path(__file__).parents[2] / "tests" / "robots" / "ur5-turn.toml"
+
+
+@pytest.mark.parametrize("problem", [driftless.Task(), driftless.Task().problem("time-free")], ids=["task", "problem"])
+def test_one_task_is_that_of_the_command(problem: driftless.Task | driftless.Problem, command: list[str], tmp_path: Path) -> None:
+    file = tmp_path / "python.toml"
+    file.write_text('name = "python"\nseeds = 2\nbudget = { evaluations = 300 }\n[[optimiser]]\nde = {}\n[[optimiser]]\npso = {}\n')
+    call(command, "run", file, "--out", tmp_path / "command", "--quiet")
+    result = driftless.run(problems=[problem], optimisers=["de", "pso"], seeds=2, budget=300, out=tmp_path / "python", progress=False)
+    result.report()
+    assert tables(tmp_path / "python") == tables(tmp_path / "command")
+    assert result.instances == ("",)
+    for found in (result, driftless.open_results(result.path)):
+        assert found.motion().cost == found.motion("xiao2023").cost
+
+
+def test_tasks_have_the_targets_of_the_command(command: list[str], tmp_path: Path) -> None:
+    """The best motion is known with the weight 0.9, and not with 0.85."""
+    file = tmp_path / "weights.toml"
+    file.write_text(
+        'name = "weights"\nseeds = 2\nbudget = { evaluations = 300 }\n[sweep]\nweight_base = [0.9, 0.85]\n[[optimiser]]\nde = {}\n'
+    )
+    call(command, "run", file, "--out", tmp_path / "command", "--quiet")
+    theirs = pl.read_csv(tmp_path / "command" / "tables" / "targets.csv")
+    weights = {f"weight_base={weight}": driftless.Task(base_weight=weight) for weight in (0.9, 0.85)}
+    problems = {label: task.problem() for label, task in weights.items()}
+    for k, own in enumerate((weights, problems)):
+        result = driftless.run(problems=own, optimisers="de", seeds=2, budget=300, out=tmp_path / f"{k}", progress=False)
+        found = result.table("targets")
+        assert found["source"].to_list() == theirs["source"].to_list() and "experiment.toml" in found["source"]
+        assert found["cost"].to_list() == pytest.approx(theirs["cost"].to_list(), rel=1e-12)
+        assert found["target"].to_list() == theirs["target"].to_list()
+    # 10 %, 1 % and 0.1 % above the best known cost, to six digits.
+    known = driftless.Task().problem().best_known
+    assert known is not None
+    assert found["cost"].to_list()[:3] == pytest.approx([1.1 * known, 1.01 * known, 1.001 * known], rel=1e-6)
+
+
+def test_problems_of_a_file_are_those_of_the_command(command: list[str], tmp_path: Path) -> None:
+    file = tmp_path / "shared.toml"
+    file.write_text(EXPERIMENT.replace('name = "shared"', 'name = "shared"\n').replace("dimension = [4]", "dimension = [4]\ninstances = 2"))
+    call(command, "run", file, "--out", tmp_path / "command", "--quiet")
+    result = driftless.run(
+        name="shared", problems=driftless.problems(file), optimisers=["cma-es", "de"], seeds=3, budget=400, out=tmp_path / "python", progress=False
+    )
+    result.report()
+    assert tables(tmp_path / "python") == tables(tmp_path / "command")
+    assert result.table("summary")["group"].unique(maintain_order=True).to_list() == ["sphere dimension=4", "ackley dimension=4"]
+
+
+def test_motions_of_several_tasks(tmp_path: Path) -> None:
+    tasks = {"paper": driftless.Task(), "ur5": driftless.Task.from_file(UR5)}
+    result = driftless.run(
+        problems={**tasks, "bowl": bowl}, optimisers="de", seeds=1, budget=300, out=tmp_path / "results", progress=False
+    )
+    again = driftless.open_results(result.path)
+    for label, task in tasks.items():
+        with pytest.raises(KeyError, match=rf'do not hold the task of \\?"{label}\\?": pass it, as in `motion'):
+            again.motion(label)
+        assert again.motion(label, task).coefficients.tolist() == result.motion(label).coefficients.tolist()
+    with pytest.raises(driftless.InputError, match='found another task than that of "ur5"'):
+        again.motion("ur5", tasks["paper"])
+    for found in (result, again):
+        with pytest.raises(KeyError, match='"bowl" is no task, and has no motion; tasks are "paper", "ur5"'):
+            found.motion("bowl")
+        with pytest.raises(KeyError, match='found no instance "xiao2023", expected one of "paper", "ur5", "bowl"'):
+            found.motion("xiao2023")
+
+
+def test_formulations_are_the_optimisers_to_choose(tmp_path: Path) -> None:
+    with pytest.raises(driftless.InputError, match="found a problem in the formulation 'raw', which is an optimiser's to choose"):
+        driftless.run(problems=driftless.Task().problem("raw"), optimisers="de", out=tmp_path)
 
 
 # Results are shared with the command
@@ -438,7 +550,7 @@ def test_exceptions_are_told(solver: Callable[..., object], message: str, evalua
         result = race(solver, tmp_path)
     one = record(result)
     assert (one["status"], one["evaluations"]) == ("failed", evaluations)
-    assert pytest.importorskip("re").fullmatch(message, str(one["message"])), one["message"]
+    assert re.fullmatch(message, str(one["message"])), one["message"]
     assert result.failed == 1
     warnings = [entry for entry in caplog.records if entry.levelno == logging.WARNING]
     assert len(warnings) == 1 and solver.__name__ in warnings[0].getMessage()
@@ -560,7 +672,7 @@ def test_answers_that_are_no_costs(answer: object, message: str, tmp_path: Path)
     wrong = driftless.problem(lower=-1, upper=1, dimension=2, name="wrong")(lambda x: answer)
     one = record(race(guess, tmp_path, problem=wrong))
     assert one["status"] == "failed"
-    assert pytest.importorskip("re").fullmatch(message, str(one["message"])), one["message"]
+    assert re.fullmatch(message, str(one["message"])), one["message"]
 
 
 def test_problems_that_raise(tmp_path: Path) -> None:
@@ -888,9 +1000,15 @@ def test_what_is_no_entrant(tmp_path: Path) -> None:
     for optimisers in (plain, [plain], None, [3]):
         with pytest.raises(TypeError, match="expected a name or an optimiser: decorate functions with `driftless.optimiser`"):
             driftless.run(problems=bowl, optimisers=optimisers)  # type: ignore[arg-type]
-    for problems in (plain, [plain], "sphere", {"a": 3}):
+    for problems in (plain, [plain], {"a": 3}):
         with pytest.raises(TypeError, match="expected a task or a problem: decorate functions with `driftless.problem`"):
             driftless.run(problems=problems, optimisers=guess)  # type: ignore[arg-type]
+    for problems in ("my.toml", [Path("my.toml")], {"a": "my.toml"}):
+        with pytest.raises(TypeError, match="found 'my.toml', expected a task or a problem: `Task.from_file` reads a task"):
+            driftless.run(problems=problems, optimisers=guess)  # type: ignore[arg-type]
+    for what, number in (("seeds", [1, 2]), ("budget", 2e3), ("jobs", "two")):
+        with pytest.raises(TypeError, match=re.escape(f"found {what} = {number!r}, expected a whole number")):
+            driftless.run(problems=bowl, optimisers=guess, **{what: number})  # type: ignore[arg-type]
     for keywords in ({"seeds": -1}, {"budget": 0}, {"jobs": -1}, {"seeds": 10**7}):
         with pytest.raises(ValueError, match=r"found \w+ = -?\d+, expected 1 to"):
             driftless.run(problems=bowl, optimisers=guess, **keywords)  # type: ignore[arg-type]
@@ -1020,13 +1138,27 @@ def test_experiments_that_cannot_be_run(tmp_path: Path) -> None:
         driftless.run(tmp_path / "none.toml")
     with pytest.raises(driftless.InputError, match="optimiser"):
         driftless.run(problems=bowl, out=tmp_path)
-    with pytest.raises(driftless.InputError, match="cma"):
-        driftless.run(problems=bowl, optimisers="cma", out=tmp_path)
+    for optimiser, message in [
+        ("cma", 'found no optimiser "cma", expected one of cma-es, .*; did you mean "cma-es"'),
+        (driftless.builtin("de", population=-3), "de: population: found -3, expected a whole number"),
+        (driftless.builtin("de", label="mine", populatoin=30), "mine: populatoin: unknown field `populatoin`, .*did you mean `population`"),
+    ]:
+        with pytest.raises(driftless.InputError, match=f"^{message}") as caught:
+            driftless.run(problems=bowl, optimisers=["random", optimiser], out=tmp_path)
+        assert (caught.value.file, caught.value.line) == ("", None)
+    # Nothing of the optimiser stands in the file.
+    file = tmp_path / "bowls.toml"
+    file.write_text('name = "bowls"\n[functions]\nname = ["sphere"]\n[[optimiser]]\nde = {}\n')
+    with pytest.raises(driftless.InputError, match="`scp` needs derivatives") as caught:
+        driftless.run(file, optimisers="scp", out=tmp_path)
+    assert caught.value.line is None
     with pytest.raises(ValueError, match="found seeds = 0, expected 1 to 1000000"):
         race(guess, tmp_path, seeds=0)
     for jobs in (0, 1025):
         with pytest.raises(ValueError, match=f"found jobs = {jobs}, expected 1 to 1024"):
             race(guess, tmp_path, jobs=jobs)
+    with pytest.raises(driftless.InputError, match='^name: found name "a b", expected letters'):
+        driftless.run(name="a b", problems=driftless.Task(), optimisers="de", out=tmp_path)
     with pytest.raises(driftless.ResultsError, match="found no experiment.toml in"):
         driftless.open_results(tmp_path / "none")
 

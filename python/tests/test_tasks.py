@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import multiprocessing
-import os
 import pickle
 import subprocess
 from pathlib import Path
@@ -15,10 +14,9 @@ import pytest
 
 import driftless
 
-from .conftest import call, call_json
+from processes import call, call_json
 
-# Where robots of the workspace are, for tests that have been copied elsewhere.
-REPOSITORY = Path(os.environ.get("DRIFTLESS_REPOSITORY", Path(__file__).parents[2]))
+ROBOTS = Path(__file__).parents[2] / "tests" / "robots"
 
 
 @pytest.mark.parametrize(
@@ -52,7 +50,7 @@ def test_files_of_a_motion_are_the_commands(command: list[str], tmp_path: Path) 
 @pytest.mark.parametrize("file", [None, "ur5-turn", "iiwa-turn"])
 @pytest.mark.parametrize("formulation", ["time-free", "scaled", "raw"])
 def test_costs_and_slopes_are_those_of_the_command(command: list[str], file: str | None, formulation: str) -> None:
-    path = None if file is None else REPOSITORY / "tests" / "robots" / f"{file}.toml"
+    path = None if file is None else ROBOTS / f"{file}.toml"
     task = driftless.Task() if path is None else driftless.Task.from_file(path)
     problem = task.problem(formulation)
     arguments = [] if path is None else [str(path)]
@@ -138,6 +136,20 @@ def test_mistakes_name_their_keyword(keywords: dict[str, object], message: str, 
     assert isinstance(caught.value, ValueError) and isinstance(caught.value, driftless.Error)
 
 
+def test_what_another_robot_needs_is_told_by_keyword() -> None:
+    with pytest.raises(driftless.InputError) as caught:
+        driftless.Task(robot=ROBOTS.parents[1] / "experiments" / "robots" / "iiwa.toml", base_weight=0.8)
+    told = str(caught.value)
+    assert told.startswith("robot: the task does not state `start_joints_deg`, `start_base_zyx_deg`, `goal_joints_deg`")
+    assert "`jerk_limit_deg_s3`" in told and "limits." not in told
+
+
+def test_a_robot_is_no_task() -> None:
+    with pytest.raises(driftless.InputError, match="found the file of a robot, expected that of a task") as caught:
+        driftless.plan(ROBOTS.parents[1] / "experiments" / "robots" / "iiwa.toml", progress=False)
+    assert caught.value.hint == "a task names its robot's file as `robot` in `[task]`"
+
+
 def test_a_mistake_in_a_file(tmp_path: Path) -> None:
     path = tmp_path / "my.toml"
     path.write_text('[task]\nrobot = "xiao2023"\n\n[task.limits]\njerk_deg = 60\n')
@@ -205,6 +217,9 @@ def test_arguments_of_plan() -> None:
         driftless.plan(optimiser="cma", progress=False)
     with pytest.raises(driftless.InputError, match='found family "splines", expected "spline" or "sine-polynomial"'):
         driftless.plan(family="splines", progress=False)
+    for keywords, message in [({"budget": 2e3}, "found budget = 2000.0"), ({"seed": "one"}, "found seed = 'one'")]:
+        with pytest.raises(TypeError, match=f"{message}, expected a whole number"):
+            driftless.plan(**keywords, progress=False)  # type: ignore[arg-type]
     with pytest.raises(driftless.InputError, match='found `pieces`, which is for family="spline" alone'):
         driftless.plan(family="sine-polynomial", pieces=20, progress=False)
 
@@ -227,7 +242,84 @@ def test_tasks_and_motions_go_to_other_processes_and_back() -> None:
 
 @pytest.mark.parametrize("name", ["ur5-turn", "iiwa-turn"])
 def test_plans_of_other_robots(command: list[str], name: str) -> None:
-    file = REPOSITORY / "tests" / "robots" / f"{name}.toml"
+    file = ROBOTS / f"{name}.toml"
     told = call_json(command, "plan", file, "--json", "--budget", "5000")
     found = driftless.plan(file, budget=5000, progress=False).as_dict()
     assert found["j"] == told["j"] and found["coefficients"] == told["coefficients"]
+
+
+@pytest.mark.parametrize("name", ["panda", "canadarm2", "dual_arm"])
+def test_robots_come_with_tasks(command: list[str], name: str) -> None:
+    told = call_json(command, "plan", name, "--json", "--budget", "300")
+    found = driftless.plan(driftless.Task(robot=name), budget=300, progress=False).as_dict()
+    assert found["j"] == told["j"] and found["coefficients"] == told["coefficients"]
+
+
+URDF = """<robot name="arm">
+<link name="foot"/>
+<link name="upper"><inertial><origin xyz="0 0 0.4"/><mass value="8"/><inertia ixx="0.4" iyy="0.4" izz="0.1"/></inertial></link>
+<link name="slider"><inertial><origin xyz="0 0 0.3"/><mass value="5"/><inertia ixx="0.2" iyy="0.2" izz="0.1"/></inertial></link>
+<link name="wrist"><inertial><origin xyz="0.2 0 0"/><mass value="3"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
+<joint name="turn" type="continuous"><parent link="foot"/><child link="upper"/><axis xyz="1 0 0"/></joint>
+<joint name="slide" type="prismatic"><parent link="upper"/><child link="slider"/><origin xyz="0 0 0.5"/><axis xyz="0 1 1"/>
+<limit lower="0" upper="0.6" velocity="0.2" effort="9"/></joint>
+<joint name="bend" type="revolute"><parent link="slider"/><child link="wrist"/><axis xyz="0 0 1"/>
+<limit lower="-2" upper="2" velocity="1" effort="9"/></joint>
+</robot>
+"""
+
+
+def test_a_urdf_is_planned_for(command: list[str], tmp_path: Path) -> None:
+    urdf = tmp_path / "arm.urdf"
+    urdf.write_text(URDF)
+    task = driftless.Task(
+        robot=urdf,
+        base={"mass": 100, "inertia": {"xx": 10, "yy": 12, "zz": 14}, "mount": [0, 0, 0.5]},
+        start_joints={"turn": 0, "slide": 0.1, "bend": -20},
+        goal_joints=[30, 0.4, 20],
+        start_base_zyx_deg=[0, 0, 0],
+        goal_base_zyx_deg=[0, 0, 0],
+        rate_limit=[50, 0.15, 50],
+        acceleration_limit=[70, 0.2, 70],
+        jerk_limit=[80, 0.3, 80],
+    )
+    motion = driftless.plan(task, budget=500, progress=False)
+    samples = motion.sample()
+    assert samples.units == ("rad", "m", "rad")
+    assert samples.angle[-1] == pytest.approx([np.radians(30), 0.4, np.radians(20)])
+    assert motion.peaks["rate"][1] <= 0.15 * (1 + 1e-6)
+    assert samples.to_polars()["unit"][:3].to_list() == ["rad", "m", "rad"]
+    file = tmp_path / "task.toml"
+    file.write_text("""[task]
+robot = "arm.urdf"
+base = { mass = 100, inertia = { xx = 10, yy = 12, zz = 14 }, mount = [0, 0, 0.5] }
+start = { joints = [0, 0.1, -20], base_zyx_deg = [0, 0, 0] }
+goal = { joints = { turn = 30, slide = 0.4, bend = 20 }, base_zyx_deg = [0, 0, 0] }
+limits = { rate = [50, 0.15, 50], acceleration = [70, 0.2, 70], jerk = [80, 0.3, 80] }
+""")
+    motion.save(tmp_path / "ours.csv")
+    call(command, "plan", file, "--budget", "500", "--motion", tmp_path / "theirs.csv")
+    assert (tmp_path / "ours.csv").read_bytes() == (tmp_path / "theirs.csv").read_bytes()
+    pytest.importorskip("matplotlib")
+    labels = [axes.get_ylabel() for axes in motion.plot().axes]
+    assert labels[:2] == ["position [° or m]", "rate [° or m/s]"]
+
+
+def test_joints_follow_others() -> None:
+    whole = driftless.Task(robot="panda")
+    task = driftless.Task(robot="panda", follow={"panda_joint6": {"joint": "panda_joint4", "multiplier": -1}})
+    assert task.limits[5].tolist() == task.limits[3].tolist()
+    assert len(task.limits) == len(whole.limits)
+    with pytest.raises(driftless.InputError, match="panda_joint4x"):
+        driftless.Task(robot="panda", follow={"panda_joint6": "panda_joint4x"})
+
+
+def test_joints_are_locked_and_a_payload_is_carried() -> None:
+    whole = driftless.Task(robot="panda")
+    locked = driftless.Task(robot="panda", locked={"panda_joint3": 10})
+    assert locked.limits.tolist() == np.delete(whole.limits, 2, axis=0).tolist()
+    carrying = driftless.Task(robot="panda", payload={"mass": 20, "centre_of_mass": [0, 0, 0.1]})
+    x = whole.problem().lower / 3
+    assert carrying.problem()(x) != whole.problem()(x)
+    with pytest.raises(driftless.InputError, match="no joint `panda_jont3` that moves"):
+        driftless.Task(robot="panda", locked=["panda_jont3"])

@@ -121,7 +121,9 @@ impl<F: Family> Midpoints<F> {
                 let column = family.coefficients_of(joint).start + k;
                 for (time, change) in (*first..).zip(&(turn * change).lanes()[..T::COUNT]) {
                     let place = time * family.dimension() + column;
-                    slopes.set_column(place, &Vector3::from(*change));
+                    // Joints that follow another one share its coefficients.
+                    let mut column = slopes.column_mut(place);
+                    column += Vector3::from(*change);
                 }
             }
         }

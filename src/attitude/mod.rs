@@ -51,6 +51,21 @@ pub fn increments<'a>(
     })
 }
 
+/// The rotation of the base between two times, in base axes at the first, by one step of three nodes.
+pub fn increment(
+    robot: &Robot,
+    [from, to]: [f64; 2],
+    mut write: impl FnMut(f64, &mut [f64], &mut [f64]),
+) -> UnitQuaternion<f64> {
+    let mut angles = vec![0.0; robot.joint_count()];
+    let mut rates = angles.clone();
+    let rates_at = GAUSS.map(|node| {
+        write(from + node * (to - from), &mut angles, &mut rates);
+        base_twist(robot, &angles, &rates).angular * (to - from)
+    });
+    so3::exp(magnus(gauss_moments(rates_at))).into()
+}
+
 /// The rotation of the base over the whole path, from its attitude at the start, in base axes.
 pub fn net_rotation(robot: &Robot, path: &Path<'_>, steps: usize) -> UnitQuaternion<f64> {
     let write = |tau, angles: &mut [f64], rates: &mut [f64]| {

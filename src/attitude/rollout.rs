@@ -54,7 +54,21 @@ impl<F: Family> Rollout<F> {
                 })
             })
         });
-        Self { panels, nodes: family.nodes(times), moments: moments(&places, panels) }
+        let width = 1.0 / (panels * STEPS) as f64;
+        Self { panels, nodes: family.nodes(times), moments: moments(&places, width) }
+    }
+
+    /// One panel, over the part of the paths between two times.
+    pub(super) fn between(family: &F, [from, to]: [f64; 2]) -> Self {
+        let places = nodes();
+        // The other lanes stand still at the path's start.
+        let times = places.into_iter().flat_map(|place| {
+            let mut lanes = [0.0; MOST];
+            lanes[0] = from + place * (to - from);
+            lanes
+        });
+        let width = (to - from) / STEPS as f64;
+        Self { panels: 1, nodes: family.nodes(times), moments: moments(&places, width) }
     }
 
     /// Magnus steps that it makes.
@@ -88,6 +102,50 @@ impl<F: Family> Rollout<F> {
         mount * UnitQuaternion::from(net) * mount.inverse()
     }
 
+    /// The rotations of the base from its attitude at the start to the end of every step, in base axes.
+    #[inline(always)]
+    pub fn rotations<T: Lanes>(
+        &self,
+        arm: &Arm,
+        family: &F,
+        coefficients: &[f64],
+        joints: &mut Vec<JointState>,
+        rotations: &mut Vec<UnitQuaternion<f64>>,
+    ) {
+        if arm.is_plain() {
+            self.follow::<T, true>(arm, family, coefficients, joints, rotations);
+        } else {
+            self.follow::<T, false>(arm, family, coefficients, joints, rotations);
+        }
+    }
+
+    #[inline(always)]
+    fn follow<T: Lanes, const PLAIN: bool>(
+        &self,
+        arm: &Arm,
+        family: &F,
+        coefficients: &[f64],
+        joints: &mut Vec<JointState>,
+        rotations: &mut Vec<UnitQuaternion<f64>>,
+    ) {
+        joints.resize(NODES * family.joints(), JointState::default());
+        rotations.clear();
+        let (mut net, mount, back) = (Quat::identity(), arm.mount(), arm.mount().inverse());
+        for first in (0..self.panels).step_by(T::COUNT) {
+            let rates = self.rates::<T, PLAIN>(arm, family, coefficients, first, joints);
+            let mut steps = [[Quat::identity(); MOST]; STEPS];
+            for (step, moments) in steps.iter_mut().zip(&self.moments) {
+                so3::exp(magnus(step_moments(moments, &rates))).spread(step);
+            }
+            for panel in 0..T::COUNT.min(self.panels - first) {
+                for step in &steps {
+                    net = net.then(step[panel]);
+                    rotations.push(mount * UnitQuaternion::from(net) * back);
+                }
+            }
+        }
+    }
+
     /// The rotation along the mount's axes.
     #[inline(always)]
     fn compose<T: Lanes, const PLAIN: bool>(
@@ -102,11 +160,7 @@ impl<F: Family> Rollout<F> {
         for group in (0..self.panels).step_by(MOST) {
             let mut panels = [Quat::identity(); MOST];
             for part in (0..MOST).step_by(T::COUNT).take_while(|part| group + part < self.panels) {
-                self.drive::<T>(arm, family, coefficients, group + part, joints);
-                let mut rates = [Vec3::zero(); NODES];
-                for (rate, joints) in rates.iter_mut().zip(joints.chunks_exact(family.joints())) {
-                    *rate = arm.base_rate::<T, PLAIN>(joints);
-                }
+                let rates = self.rates::<T, PLAIN>(arm, family, coefficients, group + part, joints);
                 let mut panel = Quat::identity();
                 for step in &self.moments {
                     panel = panel.then(so3::exp(magnus(step_moments(step, &rates))));
@@ -116,6 +170,24 @@ impl<F: Family> Rollout<F> {
             net = net.then(product(panels));
         }
         net
+    }
+
+    /// The base's rate at every node of the panels from `first` on.
+    #[inline(always)]
+    fn rates<T: Lanes, const PLAIN: bool>(
+        &self,
+        arm: &Arm,
+        family: &F,
+        coefficients: &[f64],
+        first: usize,
+        joints: &mut [JointState],
+    ) -> [Vec3<T>; NODES] {
+        self.drive::<T>(arm, family, coefficients, first, joints);
+        let mut rates = [Vec3::zero(); NODES];
+        for (rate, joints) in rates.iter_mut().zip(joints.chunks_exact(family.joints())) {
+            *rate = arm.base_rate::<T, PLAIN>(joints);
+        }
+        rates
     }
 
     /// Every joint's state at every node of the panels from `first` on.
@@ -152,12 +224,11 @@ fn nodes() -> [f64; NODES] {
     from_fn(|n| if n < NODES / 2 { NODE_PLACES[n] } else { 1.0 - NODE_PLACES[NODES - 1 - n] })
 }
 
-/// Each step's moments from the rates at a panel's nodes.
+/// The moments of each step, which has this width, from the rates at a panel's nodes.
 ///
 /// Three Gauss nodes of a step determine its moments; there the interpolating polynomial is evaluated
 /// in Lagrange's form.
-fn moments(nodes: &[f64; NODES], panels: usize) -> [[[f64; NODES]; 3]; STEPS] {
-    let width = 1.0 / (panels * STEPS) as f64;
+fn moments(nodes: &[f64; NODES], width: f64) -> [[[f64; NODES]; 3]; STEPS] {
     from_fn(|step| {
         let mut moments = [[0.0; NODES]; 3];
         for n in 0..NODES {

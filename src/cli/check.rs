@@ -7,16 +7,16 @@ use std::time::Duration;
 use clap::Args;
 use serde::Serialize;
 
-use super::{CliError, warn_of};
+use super::{CliError, read_robot_or, warn_of};
 use crate::input::{Document, InputError};
 use crate::reorientation::{ReplayFile, TaskFile};
-use crate::robot::RobotFile;
+use crate::robot::{Robot, RobotFile, ShapeSource};
 
 /// Say what is wrong with an input file, or print it resolved
 #[derive(Debug, Args)]
 pub(super) struct Check {
-    /// A task, robot, replay or experiment file
-    #[arg(value_name = "FILE.toml")]
+    /// A task, robot, replay or experiment file, or a URDF
+    #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Do not measure how long an experiment takes
     #[arg(long)]
@@ -40,7 +40,7 @@ impl Kind {
         let has = |keys: &[&str]| -> Result<bool, InputError> {
             keys.iter().try_fold(false, |found, key| Ok(found || document.key(key)?.is_some()))
         };
-        Ok(if has(&["joint", "base"])? {
+        Ok(if document.is_xml() || has(&["joint", "base", "link", "urdf", "arm"])? {
             Self::Robot
         } else if has(&["motion"])? {
             Self::Replay
@@ -62,18 +62,38 @@ pub(super) fn expect_task(document: &Document, verb: &str) -> Result<(), CliErro
     };
     Err(CliError::Usage {
         message: format!("{} is {found}, and `{verb}` takes a task", document.path.display()),
-        help: None,
+        help: (found == "a robot").then(|| {
+            let robot = document.path.display();
+            format!(
+                "a task names it: `[task]` with `robot = \"{robot}\"`, a start, a goal and limits"
+            )
+        }),
     })
 }
 
 impl Check {
     pub(super) fn execute(self) -> Result<(), CliError> {
-        let document = Document::read(&self.file)?;
+        let document = read_robot_or(&self.file)?;
         match Kind::of(&document)? {
             Kind::Robot => {
                 let file = RobotFile::read(&document)?;
+                if let Some(root) = file.root_without_mass() {
+                    print_resolved("robot", &file)?;
+                    if let Some(meshes) = words_for_meshes(&file) {
+                        say!("\n{meshes}");
+                    }
+                    note!(
+                        "note: `{root}`, the root of the robot, has no mass; a task gives it a base by `[task.base]`"
+                    );
+                    return Ok(());
+                }
+                let robot = file.build(&document)?;
                 print_resolved("robot", &file)?;
-                warn_of(&file.build(&document)?);
+                say!("\n{}", words_for_shapes(&robot));
+                if let Some(meshes) = words_for_meshes(&file) {
+                    say!("{meshes}");
+                }
+                warn_of(&robot);
             }
             Kind::Replay => {
                 let file = ReplayFile::read(&document)?;
@@ -157,6 +177,31 @@ fn words_for_shards(sensible: crate::experiment::Sensible, workers: usize) -> St
 fn check_experiment(_: &Document, _: bool) -> Result<(), CliError> {
     let message = "this is an experiment; this build leaves experiments out".to_owned();
     Err(CliError::Usage { message, help: None })
+}
+
+/// Where a robot's shapes come from, and how many each body has.
+fn words_for_shapes(robot: &Robot) -> String {
+    let (shaped, source) = robot.with_shapes();
+    let links = shaped.links().iter().map(|link| (link.name.as_str(), &link.body));
+    let bodies = std::iter::once(("base", shaped.base())).chain(links);
+    let counts: Vec<String> = bodies
+        .filter(|(_, body)| !body.shapes.is_empty())
+        .map(|(name, body)| format!("{name} {}", body.shapes.len()))
+        .collect();
+    let source = match source {
+        ShapeSource::Stated => "stated",
+        ShapeSource::Derived => "derived, since none are stated",
+    };
+    format!("# shapes ({source}): {}", counts.join(", "))
+}
+
+/// How many links have no shape for having meshes instead, if any.
+fn words_for_meshes(file: &RobotFile) -> Option<String> {
+    let (meshes, links) = file.links_with_meshes_alone();
+    let verb = if meshes == 1 { "has" } else { "have" };
+    (meshes > 0).then(|| {
+        format!("# {meshes} of {links} links {verb} no shape: their collision geometry is a mesh")
+    })
 }
 
 fn print_resolved(kind: &str, file: &impl Serialize) -> Result<(), CliError> {

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use super::motion::Told;
-use crate::reorientation::{BestKnown, FamilySpec, OtherFamily, Planned, Reach, Spent};
+use crate::reorientation::{
+    BestKnown, FamilySpec, NOT_CHECKED, OtherFamily, Planned, Reach, Spent,
+};
 
 /// For people.
 pub(super) fn told(found: &Planned) -> String {
@@ -17,10 +19,10 @@ pub(super) fn told(found: &Planned) -> String {
         }
     };
     let excursions = found.excursions();
-    let told = Told { task, assessment: &found.assessment, excursions: &excursions };
+    let told = Told { task, assessment: &found.assessment, excursions };
     let _ = writeln!(text, "{told}");
     let _ = writeln!(text, "  verdict        {}", found.verdict());
-    let _ = writeln!(text, "  not checked    collisions, torques, flexible parts; see the README");
+    let _ = writeln!(text, "  not checked    {}", NOT_CHECKED.join(", "));
     if let Some(known) = BestKnown::of(&*found.problem) {
         let _ = writeln!(text, "  this J         {}", known.compared_with(found.assessment.cost));
     }

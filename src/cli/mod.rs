@@ -31,10 +31,12 @@ mod motion;
 mod plan;
 mod progress;
 mod replay;
+mod replayed;
 #[cfg(feature = "harness")]
 mod report;
 #[cfg(feature = "harness")]
 mod results;
+mod robot;
 #[cfg(feature = "harness")]
 mod run;
 #[cfg(feature = "harness")]
@@ -63,7 +65,7 @@ use thiserror::Error;
 
 use crate::input::{Document, InputError};
 use crate::output::FileError;
-use crate::reorientation::{ExportError, PlanError};
+use crate::reorientation::{ExportError, PlanError, TaskFile, TrajectoryError};
 use crate::robot::Robot;
 use crate::search::Watch;
 
@@ -108,9 +110,15 @@ enum Verb {
     #[cfg(feature = "harness")]
     Serve(serve::Serve),
     /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
+    ///
+    /// A trajectory of another program is checked against a task: where the base ends, peaks, limits, ranges, and what is not at
+    /// rest or jumps. It is read as ROS 2's joint trajectory controller plays it, with straight lines, cubics or quintics between
+    /// points, as these have positions alone, rates too, or accelerations too.
     Replay(replay::Replay),
     /// Show optimisers, problems and robots with their settings
     List(list::List),
+    /// Convert robot files from and to URDF
+    Robot(robot::RobotVerb),
     /// Say what is wrong with an input file, or print it resolved
     Check(check::Check),
 }
@@ -266,6 +274,18 @@ impl From<PlanError> for CliError {
     }
 }
 
+impl From<TrajectoryError> for CliError {
+    fn from(error: TrajectoryError) -> Self {
+        let message = error.to_string();
+        match error {
+            TrajectoryError::File(FileError { path, source, .. }) => {
+                Self::Unreadable { path, source }
+            }
+            TrajectoryError::Content { .. } => Self::Usage { message, help: None },
+        }
+    }
+}
+
 #[cfg(feature = "harness")]
 impl From<crate::experiment::ShardError> for CliError {
     fn from(error: crate::experiment::ShardError) -> Self {
@@ -325,6 +345,7 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Serve(serve) => serve.execute(),
         Verb::Replay(replay) => replay.execute(),
         Verb::List(list) => list.execute(),
+        Verb::Robot(robot) => robot.execute(),
         Verb::Check(check) => check.execute(),
     };
     match outcome {
@@ -389,6 +410,26 @@ fn read_or(
     embedded: impl FnOnce() -> Document,
 ) -> Result<Document, InputError> {
     file.map_or_else(|| Ok(embedded()), Document::read)
+}
+
+/// A task: its file, the name of a robot that comes with one, or the paper's.
+fn read_task(file: Option<&Path>) -> Result<Document, InputError> {
+    let Some(file) = file else { return Ok(TaskFile::paper()) };
+    match shipped(file) {
+        Some((robot, _)) => Ok(Document::embedded(robot, &format!("[task]\nrobot = {robot:?}\n"))),
+        None => Document::read(file),
+    }
+}
+
+/// A file, or that of a robot that comes with the program, by its name.
+fn read_robot_or(file: &Path) -> Result<Document, InputError> {
+    shipped(file).map_or_else(|| Document::read(file), |(_, document)| Ok(document))
+}
+
+/// A robot that comes with the program and its file, where a path is its name and no file's.
+fn shipped(path: &Path) -> Option<(&str, Document)> {
+    let name = path.to_str().filter(|_| !path.is_file())?;
+    Robot::embedded(name).map(|document| (name, document))
 }
 
 /// Says what is unphysical about a robot.

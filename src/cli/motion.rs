@@ -10,8 +10,10 @@ use crate::output::check_writable;
 #[cfg(feature = "harness")]
 use crate::output::create_folder;
 use crate::reorientation::{
-    AnyReorientation, Assessment, Excursions, INTERVALS, MotionFormat, write_motion,
+    AnyReorientation, Assessment, Closest, Excursions, Motion, MotionFormat, Used, intervals,
+    write_motion,
 };
+use crate::robot::{JointKind, Robot, ShapeSource};
 use crate::task::Task;
 
 /// Where to write a motion.
@@ -20,6 +22,9 @@ pub(super) struct MotionFiles {
     /// Write the motion to a .csv, .parquet or .yaml file (ROS JointTrajectory)
     #[arg(long, value_name = "FILE")]
     motion: Option<PathBuf>,
+    /// Joints that --motion has, by name or by the beginning of their names: left_* [default: all]
+    #[arg(long, value_name = "JOINTS", value_delimiter = ',', requires = "motion")]
+    joints: Vec<String>,
     /// Draw joint angles, their derivatives and the base's attitude into a folder
     #[cfg(feature = "harness")]
     #[arg(long, value_name = "DIR")]
@@ -37,6 +42,18 @@ impl MotionFiles {
             create_folder(folder)?;
         }
         Ok(())
+    }
+
+    /// Finds fault with the joints asked for before any work is done.
+    pub(super) fn check_joints(&self, robot: &Robot) -> Result<(), CliError> {
+        let names: Vec<&str> = robot.joints().map(|joint| joint.name).collect();
+        match self.joints.iter().find(|asked| !names.iter().any(|name| is_meant(asked, name))) {
+            None => Ok(()),
+            Some(asked) => Err(CliError::Usage {
+                message: format!("--joints: no joint `{asked}` of robot `{}`", robot.name()),
+                help: Some(format!("its joints are {}", names.join(", "))),
+            }),
+        }
     }
 
     /// Says which of the files that were asked for there are not, as there is no motion.
@@ -70,21 +87,55 @@ impl MotionFiles {
         coefficients: &[f64],
         duration: f64,
     ) -> Result<(), CliError> {
+        let sample = |intervals| problem.sample(coefficients, duration, intervals);
+        self.write_samples(problem.task(), intervals(problem.spec()), sample)
+    }
+
+    /// The same, of a motion that is sampled by intervals; `intervals` of them for other tools.
+    pub(super) fn write_samples(
+        &self,
+        task: &Task,
+        intervals: usize,
+        sample: impl Fn(usize) -> Motion,
+    ) -> Result<(), CliError> {
         if let Some((path, format)) = self.format()? {
-            let motion = problem.sample(coefficients, duration, INTERVALS);
+            let mut motion = sample(intervals);
+            if !self.joints.is_empty() {
+                let is_asked = |name: &str| self.joints.iter().any(|asked| is_meant(asked, name));
+                motion.joints.retain(|joint| is_asked(&joint.name));
+            }
             write_motion(path, format, &motion)?;
         }
         #[cfg(feature = "harness")]
         if let Some(folder) = &self.figures {
-            let motion = problem.sample(coefficients, duration, crate::reorientation::SAMPLES);
-            crate::reorientation::write_motion_figures(folder, &motion, problem.task())?;
+            let motion = sample(crate::reorientation::SAMPLES);
+            crate::reorientation::write_motion_figures(folder, &motion, task)?;
         }
+        #[cfg(not(feature = "harness"))]
+        let _ = task;
         Ok(())
     }
 }
 
+/// Whether a name is the one asked for, or begins as that does before a `*`.
+fn is_meant(asked: &str, name: &str) -> bool {
+    asked.strip_suffix('*').map_or(asked == name, |start| name.starts_with(start))
+}
+
 /// Errors of the residual that its digits show \[°\].
 const SHOWN_ERROR: f64 = 5e-7;
+
+/// A residual \[rad\] and by how much it may be wrong, where that shows.
+pub(super) fn residual(residual: f64, error: Option<f64>) -> String {
+    let degrees = residual.to_degrees();
+    match error.map(f64::to_degrees) {
+        Some(error) if error.is_infinite() => {
+            format!("{degrees:.6}° (uncertain: the motion swings too often)")
+        }
+        Some(error) if error >= SHOWN_ERROR => format!("{degrees:.6}° ± {error:.6}°"),
+        _ => format!("{degrees:.6}°"),
+    }
+}
 
 /// For people: cost and its parts, then the peaks joint by joint with the share of the limit used, and what happens on the way.
 pub(super) struct Told<'a> {
@@ -98,46 +149,79 @@ impl fmt::Display for Told<'_> {
         let Self { task, assessment, excursions } = self;
         writeln!(f, "  J              {:.6}", assessment.cost)?;
         writeln!(f, "  duration       {:.6} s", assessment.duration)?;
-        write!(f, "  base residual  {:.6}°", assessment.residual().to_degrees())?;
-        match assessment.residual_error.map(f64::to_degrees) {
-            Some(error) if error.is_infinite() => {
-                writeln!(f, " (uncertain: the motion swings too often)")?;
-            }
-            Some(error) if error >= SHOWN_ERROR => writeln!(f, " ± {error:.6}°")?,
-            _ => writeln!(f)?,
-        }
+        let residual = residual(assessment.residual(), assessment.residual_error);
+        writeln!(f, "  base residual  {residual}")?;
         writeln!(f, "  penalty        {:.6}", assessment.penalty())?;
         let names = task.robot.joints().map(|joint| joint.name.chars().count());
         let width = names.max().unwrap_or_default().max(12);
-        writeln!(
-            f,
-            "  {:<width$}   rate [°/s]     acceleration [°/s²]   jerk [°/s³]           range",
-            "joint"
-        )?;
+        let slides = task.robot.sliding_joint().is_some();
+        let heads = if slides {
+            "rate [unit/s]  acceleration [unit/s²] jerk [unit/s³]       range    unit"
+        } else {
+            "rate [°/s]     acceleration [°/s²]   jerk [°/s³]           range"
+        };
+        writeln!(f, "  {:<width$}   {heads}", "joint")?;
         let used = excursions.range_used(task);
         let joints = task.robot.joints().zip(&assessment.peaks.0).zip(&task.limits.0).zip(used);
         for (((joint, peaks), limits), used) in joints {
             write!(f, "  {:<width$}", joint.name)?;
             for (peak, limit) in peaks.iter().zip(limits) {
                 let share = 100.0 * peak.value / limit;
-                write!(f, "  {:>9.4} ({share:>4.0} %)", peak.value.to_degrees())?;
+                let value = joint.kind.to_file_units(peak.value);
+                write!(f, "  {value:>9.4} ({share:>4.0} %)")?;
             }
-            writeln!(f, "  {:>5.0} %", 100.0 * used)?;
+            let unit = if slides { format!("    {}", joint.kind.symbol()) } else { String::new() };
+            writeln!(f, "  {:>5.0} %{unit}", 100.0 * used)?;
         }
-        let largest = |k: usize| {
+        // Angles and distances do not compare.
+        for kind in [JointKind::Revolute, JointKind::Prismatic] {
             let all = task.robot.joints().zip(&assessment.peaks.0);
-            all.max_by(|a, b| a.1[k].value.total_cmp(&b.1[k].value))
-        };
-        if let Some((joint, peaks)) = largest(2) {
-            let (jerk, time) = (peaks[2].value.to_degrees(), peaks[2].tau * assessment.duration);
-            writeln!(f, "  largest jerk   {jerk:.4} °/s³ on {} at {time:.4} s", joint.name)?;
+            let own = all.filter(|(joint, _)| joint.kind == kind);
+            let largest = own.max_by(|a, b| a.1[2].value.total_cmp(&b.1[2].value));
+            if let Some((joint, peaks)) = largest {
+                let jerk = kind.to_file_units(peaks[2].value);
+                let (unit, time) = (kind.symbol(), peaks[2].tau * assessment.duration);
+                writeln!(
+                    f,
+                    "  largest jerk   {jerk:.4} {unit}/s³ on {} at {time:.4} s",
+                    joint.name
+                )?;
+            }
         }
-        write!(
+        writeln!(
             f,
             "  on the way     the base is up to {:.3}° from its start (at {:.4} s), turning at up to {:.3} °/s",
             excursions.base_turn.to_degrees(),
             excursions.base_turn_at,
             excursions.base_rate.to_degrees()
-        )
+        )?;
+        write!(f, "                 the tool moves at up to {:.4} m/s", excursions.tool_speed)?;
+        for kind in [JointKind::Revolute, JointKind::Prismatic] {
+            let own = task.robot.joints().zip(&excursions.torques).filter(|(j, _)| j.kind == kind);
+            if let Some((joint, torque)) = own.max_by(|a, b| a.1.total_cmp(b.1)) {
+                let unit = if kind == JointKind::Revolute { "N·m" } else { "N" };
+                write!(f, ", {} takes up to {torque:.4} {unit}", joint.name)?;
+            }
+        }
+        let mut lines = Vec::new();
+        if let Some(Closest { between: [one, other], distance, at, shapes }) = &excursions.closest {
+            let state = if *distance < 0.0 { "overlap by" } else { "come as near as" };
+            let source = match shapes {
+                ShapeSource::Stated => "",
+                ShapeSource::Derived => ", by derived shapes",
+            };
+            let distance = distance.abs();
+            lines.push(format!(
+                "                 {one} and {other} {state} {distance:.4} m (at {at:.4} s){source}"
+            ));
+        }
+        if !excursions.used.is_empty() {
+            let share = |Used { limit, share, .. }: &Used| {
+                format!("{} {:.1} %", limit.name().replace('_', " "), 100.0 * share)
+            };
+            let shares: Vec<String> = excursions.used.iter().map(share).collect();
+            lines.push(format!("  limits used    {}", shares.join(", ")));
+        }
+        lines.iter().try_for_each(|line| write!(f, "\n{line}"))
     }
 }

@@ -9,19 +9,17 @@ use super::family::FamilyOptions;
 use super::found::told;
 use super::motion::MotionFiles;
 use super::progress::Bar;
-use super::{CliError, read_or, shown, start_worker_threads, warn_of, watch};
+use super::{CliError, read_task, shown, start_worker_threads, warn_of, watch};
 use crate::input::nearest;
 use crate::optimiser::Settings;
-use crate::reorientation::{
-    Accuracy, Asked, BestKnown, FamilySpec, Planned, Planner, Reach, TaskFile,
-};
+use crate::reorientation::{Accuracy, Asked, BestKnown, FamilySpec, Planned, Planner, Reach};
 use crate::task::{Task, TaskTable};
 
 /// Find the best motion for one task
 #[derive(Debug, Args)]
 pub(super) struct Plan {
-    /// Task file; without one, the paper's task
-    #[arg(value_name = "TASK.toml")]
+    /// Task file, or a robot that comes with a task; without one, the paper's task
+    #[arg(value_name = "TASK")]
     file: Option<PathBuf>,
     /// Optimiser, with its default settings; `driftless list` shows them. Others than `scp` search sine polynomials, of few
     /// variables, unless told otherwise
@@ -63,9 +61,10 @@ impl Plan {
         start_worker_threads()?;
         self.files.check()?;
         let optimiser = find_optimiser(&self.optimiser)?;
-        let document = read_or(self.file.as_deref(), TaskFile::paper)?;
+        let document = read_task(self.file.as_deref())?;
         expect_task(&document, "plan")?;
         let planner = Planner::read(&document, self.family.choice(), optimiser)?;
+        self.files.check_joints(&planner.task().robot)?;
         if let Some(residual) = planner.task().already_there() {
             return self.tell_already_there(planner.task(), residual);
         }
@@ -106,11 +105,10 @@ impl Plan {
 
     /// Says what was found, as JSON or to people, and writes the files that were asked for.
     fn finish(&self, found: &Planned, task: &TaskTable) -> Result<(), CliError> {
-        let inherited = task.inherited();
         if self.json {
             let json = found.json(Asked {
                 task: shown(self.file.as_ref(), "xiao2023"),
-                inherited,
+                inherited: task.inherited(),
                 optimiser: &self.optimiser,
                 seed: self.seed,
             });
@@ -118,15 +116,15 @@ impl Plan {
         } else {
             let file = shown(self.file.as_ref(), "the paper's task");
             say!("{file} by {}, seed {}", self.optimiser, self.seed);
-            if self.file.is_some() && !inherited.is_empty() {
-                say!("  not stated     {} (as in the paper's task)", inherited.join(", "));
+            if let Some(inheritance) = task.inheritance().filter(|_| self.file.is_some()) {
+                say!("  not stated     {inheritance}");
             }
             say!("{}", told(found));
         }
         if let Some(failure) = &found.failure {
             note!("warning: the search failed: {failure}");
         }
-        if let Some(remark) = found.remark(self.budget) {
+        for remark in found.remark(self.budget).into_iter().chain(found.overlap()) {
             note!("{remark}");
         }
         self.say_entry(found, task);

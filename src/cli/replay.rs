@@ -1,27 +1,46 @@
 //! `driftless replay`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use super::check::expect_task;
 use super::motion::{MotionFiles, Told};
-use super::{CliError, read_or, shown, warn_of};
+use super::replayed::Trajectory;
+use super::{CliError, read_or, read_task, shown, start_worker_threads, warn_of};
 use crate::reorientation::{
-    AssessmentJson, Excursions, ExcursionsJson, Published, Reading, ReplayFile, ShapeJson,
+    AngleUnit, AssessmentJson, Excursions, ExcursionsJson, GivenTrajectory, INTERVALS, Published,
+    Reading, ReplayFile, Replayed, ShapeJson, TaskFile,
 };
 
 /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
 #[derive(Debug, Args)]
 pub(super) struct Replay {
-    /// File with a [motion] table; without one, the published motion
-    #[arg(value_name = "FILE.toml")]
+    /// File with a [motion] table, or a trajectory: a ROS JointTrajectory in .yaml or .json, or a table in .csv or .parquet, with
+    /// a row for each time and a column for each joint, or a row for each time and joint; without one, the published motion
+    #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
+    /// Task that a trajectory is for; without one, the paper's
+    #[arg(long, value_name = "TASK")]
+    task: Option<PathBuf>,
+    /// Unit of angles in a table whose columns' names state none
+    #[arg(long)]
+    unit: Option<Unit>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     files: MotionFiles,
+}
+
+/// Units of angles.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Unit {
+    /// Radians
+    Rad,
+    /// Degrees
+    Deg,
 }
 
 #[derive(Debug, Serialize)]
@@ -50,14 +69,26 @@ struct ReadingJson {
 impl Replay {
     pub(super) fn execute(self) -> Result<(), CliError> {
         self.files.check()?;
+        if let Some(file) = self.file.as_deref().filter(|file| GivenTrajectory::has_name(file)) {
+            return self.replay_trajectory(file);
+        }
+        for (option, is_given) in [("task", self.task.is_some()), ("unit", self.unit.is_some())] {
+            if is_given {
+                let message = format!(
+                    "found --{option}, which is for a trajectory in .yaml, .json, .csv or .parquet"
+                );
+                return Err(CliError::Usage { message, help: None });
+            }
+        }
         let document = read_or(self.file.as_deref(), ReplayFile::paper)?;
         let published = ReplayFile::read(&document)?.build(&document)?;
+        self.files.check_joints(&published.problem.task().robot)?;
         warn_of(&published.problem.task().robot);
         let Published { problem, coefficients, duration, .. } = &published;
         let excursions = Excursions::on_the_way(&**problem, coefficients, *duration);
         let task = problem.task();
         if self.json {
-            say!("{}", json(&published, ExcursionsJson::new(&excursions, task)));
+            say!("{}", json(&published, &excursions));
         } else {
             say!("{}", shown(self.file.as_ref(), "the solution published by Xiao et al. (2023)"));
             if let Some(claim) = published.cost {
@@ -70,13 +101,43 @@ impl Replay {
         }
         self.files.write(&*published.problem, &published.coefficients, published.duration)
     }
+
+    fn replay_trajectory(&self, file: &Path) -> Result<(), CliError> {
+        start_worker_threads()?;
+        let document = read_task(self.task.as_deref())?;
+        expect_task(&document, "replay")?;
+        let task = TaskFile::read(&document)?.task.build(&document)?;
+        self.files.check_joints(&task.robot)?;
+        warn_of(&task.robot);
+        let unit = self.unit.map(|unit| match unit {
+            Unit::Rad => AngleUnit::Rad,
+            Unit::Deg => AngleUnit::Deg,
+        });
+        let trajectory = GivenTrajectory::read(file, &task.robot, unit)?;
+        let replayed = Replayed::new(&task, &trajectory.points);
+        let task_name = shown(self.task.as_ref(), "the paper's task");
+        let told = Trajectory { file, task: &task_name, replayed: &replayed };
+        if self.json {
+            say!("{}", told.json(&trajectory.ignored));
+        } else {
+            say!("{told}");
+        }
+        if !self.json && !trajectory.ignored.is_empty() {
+            note!("note: these columns are not read: {}", trajectory.ignored.join(", "));
+        }
+        self.files.write_samples(&task, INTERVALS, |intervals| replayed.sample(intervals))
+    }
 }
 
-fn json(published: &Published, excursions: ExcursionsJson) -> String {
+fn json(published: &Published, excursions: &Excursions) -> String {
     let Published { problem, coefficients, duration, cost } = published;
+    let peaks = problem.certify(coefficients, Some(*duration)).peaks;
+    let excursions = ExcursionsJson::new(excursions, problem.task(), &peaks);
     let readings = published.readings().into_iter();
-    let readings = readings
-        .map(|(reading, assessment)| ReadingJson { reading, assessment: (&assessment).into() });
+    let readings = readings.map(|(reading, assessment)| {
+        let assessment = AssessmentJson::new(&assessment, &problem.task().robot);
+        ReadingJson { reading, assessment }
+    });
     let json = ReplayJson {
         published: PublishedJson {
             shape: ShapeJson::new(&**problem, coefficients, *duration),

@@ -12,7 +12,7 @@ use super::found::told;
 use super::motion::MotionFiles;
 use super::plan::warn_of_task;
 use super::progress::Bar;
-use super::{CliError, read_or, shown, start_worker_threads, watch};
+use super::{CliError, read_task, shown, start_worker_threads, watch};
 use crate::process::{Client, Socket, TOKEN};
 use crate::reorientation::{
     Asked, Formulated, Formulation, PlanError, Planned, Search, TaskFile, TaskProblem,
@@ -22,8 +22,8 @@ use crate::task::TaskTable;
 /// Offer a task to an optimiser of yours, which asks for costs
 #[derive(Debug, Args)]
 pub(super) struct Serve {
-    /// Task file; without one, the paper's task
-    #[arg(value_name = "TASK.toml")]
+    /// Task file, or a robot that comes with a task; without one, the paper's task
+    #[arg(value_name = "TASK")]
     file: Option<PathBuf>,
     /// Variables of sine polynomials to search in: raw, scaled or time-free
     #[arg(long, value_name = "NAME")]
@@ -49,13 +49,14 @@ impl Serve {
         start_worker_threads()?;
         self.files.check()?;
         let formulation = self.formulation()?;
-        let document = read_or(self.file.as_deref(), TaskFile::paper)?;
+        let document = read_task(self.file.as_deref())?;
         expect_task(&document, "serve")?;
         let TaskFile { task, trajectory } = TaskFile::read(&document)?;
         let trajectory = self.family.choice().over(trajectory, false);
         let file = TaskFile { trajectory: trajectory.map_err(FamilyOptions::for_splines)?, task };
         let refused = |error| document.error_at(0..0, error, None);
         let problem = file.problem(&document)?;
+        self.files.check_joints(&problem.task().robot)?;
         warn_of_task(problem.task());
         if problem.task().already_there().is_some() {
             let task = shown(self.file.as_ref(), "the paper's task");

@@ -14,7 +14,7 @@ thread_local! {
 
 /// Does the work. A panic within it, which must be on the same thread, becomes a text: what it said
 /// and where.
-pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+pub(crate) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     install_hook();
     CATCHING.set(true);
     let outcome = catch_unwind(AssertUnwindSafe(work));

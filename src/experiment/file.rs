@@ -232,14 +232,15 @@ impl Experiment {
     /// The same experiment with the optimisers of another one, too.
     #[must_use]
     pub fn with_optimisers_of(mut self, other: &Self) -> Self {
-        self.field.extend(other.field.iter().cloned());
+        // They stand in no place of this experiment's file.
+        self.field.extend(other.field.iter().map(|entry| entry.entrant.clone().into()));
         self
     }
 
     /// The same experiment without its optimisers.
     #[must_use]
     pub fn without_optimisers(self) -> Self {
-        Self { field: Vec::new(), ..self }
+        Self { field: Vec::new(), field_place: 0..0, ..self }
     }
 
     /// The same experiment with the targets that instances have, wherever they came from.

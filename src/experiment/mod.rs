@@ -34,6 +34,7 @@ mod targets;
 mod value;
 
 pub use balance::Sensible;
+pub(crate) use caught::caught;
 pub use entrant::Entrant;
 pub use estimate::{Estimate, estimate};
 pub use file::Experiment;
@@ -52,7 +53,7 @@ pub use run::{Improvement, Run, best_run};
 pub use runner::{Progress, RunError, run};
 pub use shard::{Shard, ShardChoice, ShardError};
 pub use specs::RunSpec;
-pub use standing::{FailedRun, Standing, Tally, standing};
+pub use standing::{FOUND_NOTHING, FailedRun, Standing, Tally, standing};
 pub(crate) use store::start_polars_threads;
 pub use store::{Compaction, Damage, Store, StoreError};
 pub use subject::{Coordinate, Instance, Number, Numbers, Results, Subject};

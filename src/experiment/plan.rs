@@ -314,10 +314,12 @@ impl Plan {
 fn unlike(all: impl Iterator<Item = Quantity>) -> Vec<Quantity> {
     let mut quantities: Vec<Quantity> = Vec::new();
     for quantity in all {
-        let is_other =
-            |known: &Quantity| known.name != quantity.name || known.kind != quantity.kind;
-        if quantities.iter().all(is_other) {
-            quantities.push(quantity);
+        let is_same =
+            |known: &&mut Quantity| known.name == quantity.name && known.kind == quantity.kind;
+        match quantities.iter_mut().find(is_same) {
+            // What one subject shows is shown of all.
+            Some(known) => known.heading = known.heading.take().or(quantity.heading),
+            None => quantities.push(quantity),
         }
     }
     quantities

@@ -2,17 +2,22 @@
 
 use std::collections::BTreeMap;
 
+use polars::prelude::DataType;
+
 use super::plan::Plan;
 use super::record::Status;
 use super::schema::{FORMAT, runs};
 use super::store::{Store, StoreError};
+
+/// What there is to say of a run that ended as it should and found nothing.
+pub const FOUND_NOTHING: &str = "no evaluation had a finite cost";
 
 /// How far an experiment is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Standing {
     /// One entry per optimiser, in the plan's order.
     pub tallies: Vec<Tally>,
-    /// Stored runs that failed.
+    /// Stored runs that failed or found nothing.
     pub failures: Vec<FailedRun>,
     /// Stored runs that do not belong to the plan.
     pub others: usize,
@@ -51,7 +56,7 @@ pub struct Tally {
     pub planned: usize,
     /// Stored, those that failed among them.
     pub stored: usize,
-    /// Failed.
+    /// Failed, or without a finite cost.
     pub failed: usize,
 }
 
@@ -72,7 +77,7 @@ impl std::iter::Sum for Tally {
     }
 }
 
-/// A run that failed.
+/// A run that failed or found nothing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FailedRun {
     /// Index of the run in the plan.
@@ -92,12 +97,15 @@ pub fn standing(plan: &Plan, store: &Store) -> Result<Standing, StoreError> {
     store.visit(
         "runs",
         &[runs::FORMAT, runs::KEY, runs::STATUS, runs::MESSAGE],
-        &[],
+        // Of other formats it need not be there.
+        &[runs::CERTIFIED_COST],
         |_| true,
         |frame| {
             let text = |name: &str| frame.column(name)?.str();
             let (keys, statuses, messages) =
                 (text(runs::KEY)?, text(runs::STATUS)?, text(runs::MESSAGE)?);
+            let costs = frame.column(runs::CERTIFIED_COST)?.cast(&DataType::Float64)?;
+            let costs = costs.f64()?;
             let written = frame.column(runs::FORMAT)?.u64()?;
             for i in 0..frame.height() {
                 let Some(&run) = keys.get(i).and_then(|key| planned.get(key)) else {
@@ -112,9 +120,10 @@ pub fn standing(plan: &Plan, store: &Store) -> Result<Standing, StoreError> {
                 let tally = &mut tallies[plan.runs[run].optimiser];
                 tally.stored += 1;
                 let status = statuses.get(i).unwrap_or_default();
-                if Status::is_failure(status) {
+                if Status::is_failure(status) || !costs.get(i).is_some_and(f64::is_finite) {
                     tally.failed += 1;
-                    let message = messages.get(i).unwrap_or_default().to_owned();
+                    let message = messages.get(i).filter(|message| !message.is_empty());
+                    let message = message.unwrap_or(FOUND_NOTHING).to_owned();
                     failures.push(FailedRun { run, status: status.to_owned(), message });
                 }
             }

@@ -1,9 +1,8 @@
 //! Numbers that serde checks while it still knows where they stand.
 
-use std::fmt;
 use std::num::NonZeroU64;
 
-use serde::de::{Deserializer, Error as _, IntoDeserializer, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 
 /// A number that is neither infinite nor NaN.
@@ -16,6 +15,11 @@ pub fn finite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Erro
 pub fn positive<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let value = f64::deserialize(deserializer)?;
     check(value, value.is_finite() && value > 0.0, "a finite number above zero")
+}
+
+/// A finite number above zero, where there may be none.
+pub fn optional_positive<'de, D: Deserializer<'de>>(d: D) -> Result<Option<f64>, D::Error> {
+    positive(d).map(Some)
 }
 
 /// A finite number, zero or above.
@@ -96,49 +100,13 @@ pub struct Finite(#[serde(deserialize_with = "finite")] pub f64);
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Positive(#[serde(deserialize_with = "positive")] pub f64);
 
+/// A finite number, zero or above.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct NonNegative(#[serde(deserialize_with = "non_negative")] pub f64);
+
 /// A number from 0 to 1, checked where it stands in a list.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Fraction(#[serde(deserialize_with = "fraction")] pub f64);
-
-/// One positive number for all joints, or one each.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum PerJoint {
-    /// The same for all.
-    All(f64),
-    /// From the base outward.
-    Each(Vec<f64>),
-}
-
-impl<'de> Deserialize<'de> for PerJoint {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct OneOrMany;
-        impl<'de> Visitor<'de> for OneOrMany {
-            type Value = PerJoint;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a positive number, or a list of one for each joint")
-            }
-
-            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<PerJoint, E> {
-                positive(value.into_deserializer()).map(PerJoint::All)
-            }
-
-            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<PerJoint, E> {
-                self.visit_f64(value as f64)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<PerJoint, A::Error> {
-                let mut values = Vec::new();
-                while let Some(Positive(value)) = list.next_element()? {
-                    values.push(value);
-                }
-                Ok(PerJoint::Each(values))
-            }
-        }
-        deserializer.deserialize_any(OneOrMany)
-    }
-}
 
 /// A two-element `[lower, upper]` with `lower < upper`.
 pub fn interval<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {

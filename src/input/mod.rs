@@ -13,8 +13,9 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 pub use checked::{
-    Finite, Fraction, PerJoint, Positive, count, count_from, finite, finite_array, fraction,
-    interval, non_empty, non_negative, optional_count, positive, positive_interval, share,
+    Finite, Fraction, NonNegative, Positive, count, count_from, finite, finite_array, fraction,
+    interval, non_empty, non_negative, optional_count, optional_positive, positive,
+    positive_interval, share,
 };
 
 /// A file that cannot be used, with the place in it where one is known.
@@ -121,6 +122,11 @@ impl Document {
     /// The text.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// Whether the text is XML rather than TOML, which no `<` begins.
+    pub fn is_xml(&self) -> bool {
+        self.text.trim_start_matches('\u{feff}').trim_start().starts_with('<')
     }
 
     /// Where a key stands at the top level, if it does.
@@ -243,6 +249,11 @@ fn fill<'a>(table: &mut DeTable<'a>, default: DeTable<'a>) {
             }
         }
     }
+}
+
+/// The value as one that stands nowhere in a text.
+pub(crate) fn placeless<T: Clone>(value: &Spanned<T>) -> Spanned<T> {
+    Spanned::new(0..0, value.get_ref().clone())
 }
 
 /// The same value with empty spans, at any depth.

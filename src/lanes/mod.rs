@@ -125,6 +125,9 @@ impl Width {
     }
 
     /// Does work with so many lanes, or with fewer where this machine has not so many.
+    ///
+    /// Never inlined: what is compiled here for one kind of work then serves other crates, which would compile it anew.
+    #[inline(never)]
     pub fn run<W: LaneWork>(self, work: W) -> W::Output {
         match self.min(Self::widest()) {
             #[cfg(target_arch = "x86_64")]

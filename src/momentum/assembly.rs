@@ -317,7 +317,7 @@ impl Arm {
         let parts = Parts::of(robot);
         let assembly = Assembly::new(&parts);
         let back = parts.mount.inverse();
-        let Body { mass, inertia } = robot.base();
+        let Body { mass, inertia, .. } = robot.base();
         let mut base = body(*mass, back.translation, inertia, &parts.mount.rotation);
         if let Some(fixed) = parts.carried_by(None, &back) {
             base += fixed;

@@ -32,30 +32,30 @@ pub struct Twist<T> {
 #[inline(always)]
 pub fn base_twist<T: Scalar>(robot: &Robot, positions: &[T], rates: &[T]) -> Twist<T> {
     let (balance, momentum) = if robot.is_plain() {
-        sweep::<T, true>(robot, positions, rates, |_| {})
+        sweep::<T, true>(robot, positions, rates, |_, _| {})
     } else {
-        sweep::<T, false>(robot, positions, rates, |_| {})
+        sweep::<T, false>(robot, positions, rates, |_, _| {})
     };
     balance.twist(&momentum)
 }
 
 /// One link with the base held still.
 #[derive(Debug, Clone)]
-struct MovedLink<T> {
+pub(crate) struct MovedLink<T> {
     /// The twist for unit rate of its joint, zero where that is fixed.
-    screw: Twist<T>,
-    twist: Twist<T>,
-    body: RigidBody<T>,
+    pub(crate) screw: Twist<T>,
+    pub(crate) twist: Twist<T>,
+    pub(crate) body: RigidBody<T>,
 }
 
 /// The outward sweep with the base held still: the whole system and the links' momentum; `each` is told
 /// every link.
 #[inline(always)]
-fn sweep<T: Scalar, const PLAIN: bool>(
+pub(crate) fn sweep<T: Scalar, const PLAIN: bool>(
     robot: &Robot,
     positions: &[T],
     rates: &[T],
-    mut each: impl FnMut(MovedLink<T>),
+    mut each: impl FnMut(&LinkPose<'_, T>, MovedLink<T>),
 ) -> (Balance<T>, Momentum<T>) {
     let mut system = RigidBody::base(robot);
     let mut momentum = Momentum::zero();
@@ -80,7 +80,7 @@ fn sweep<T: Scalar, const PLAIN: bool>(
         let body = RigidBody::link(&link);
         momentum += body.momentum(&twist);
         system += body;
-        each(MovedLink { screw, twist, body });
+        each(&link, MovedLink { screw, twist, body });
     }
     (system.balance(), momentum)
 }
@@ -101,13 +101,13 @@ impl<T: Scalar> LinkPose<'_, T> {
 
 impl<T: Scalar> Twist<T> {
     #[inline(always)]
-    fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self { linear: Vec3::zero(), angular: Vec3::zero() }
     }
 
     /// `S × t`: how a twist changes that turns with the screw `S`.
     #[inline(always)]
-    fn turned(&self, twist: &Self) -> Self {
+    pub(crate) fn turned(&self, twist: &Self) -> Self {
         let Self { linear, angular } = self;
         Self {
             linear: angular.cross(twist.linear) + linear.cross(twist.angular),
@@ -117,7 +117,7 @@ impl<T: Scalar> Twist<T> {
 
     /// `S ×* H`: how a momentum changes that turns with the screw `S`.
     #[inline(always)]
-    fn turned_momentum(&self, momentum: &Momentum<T>) -> Momentum<T> {
+    pub(crate) fn turned_momentum(&self, momentum: &Momentum<T>) -> Momentum<T> {
         let Self { linear, angular } = self;
         Momentum {
             linear: angular.cross(momentum.linear),
@@ -145,14 +145,14 @@ impl<T: Scalar> AddAssign for Twist<T> {
 
 /// Linear and angular momentum about the origin.
 #[derive(Debug, Clone, Copy)]
-struct Momentum<T> {
-    linear: Vec3<T>,
-    angular: Vec3<T>,
+pub(crate) struct Momentum<T> {
+    pub(crate) linear: Vec3<T>,
+    pub(crate) angular: Vec3<T>,
 }
 
 impl<T: Scalar> Momentum<T> {
     #[inline(always)]
-    fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self { linear: Vec3::zero(), angular: Vec3::zero() }
     }
 }
@@ -176,7 +176,7 @@ impl<T: Scalar> SubAssign for Momentum<T> {
 /// Mass, first moment and inertia, about the origin, of one body or of some that move as one. No
 /// configuration changes a mass: it is the same in every lane.
 #[derive(Debug, Clone, Copy)]
-struct RigidBody<T> {
+pub(crate) struct RigidBody<T> {
     mass: f64,
     first_moment: Vec3<T>,
     inertia: Sym3<T>,
@@ -189,23 +189,23 @@ impl<T: Scalar> RigidBody<T> {
     }
 
     #[inline(always)]
-    fn base(robot: &Robot) -> Self {
-        let Body { mass, inertia } = robot.base();
+    pub(crate) fn base(robot: &Robot) -> Self {
+        let Body { mass, inertia, .. } = robot.base();
         Self { mass: *mass, first_moment: Vec3::zero(), inertia: Sym3::of(inertia) }
     }
 
     #[inline(always)]
     fn link(link: &LinkPose<'_, T>) -> Self {
-        let Body { mass, inertia } = link.link.body;
+        let &Body { mass, ref inertia, .. } = &link.link.body;
         let first_moment = link.centre_of_mass.times(mass);
         let mut body =
-            Self { mass, first_moment, inertia: link.frame.rotation.congruent(Sym3::of(&inertia)) };
+            Self { mass, first_moment, inertia: link.frame.rotation.congruent(Sym3::of(inertia)) };
         body.inertia += Sym3::point(link.centre_of_mass, first_moment);
         body
     }
 
     #[inline(always)]
-    fn momentum(&self, twist: &Twist<T>) -> Momentum<T> {
+    pub(crate) fn momentum(&self, twist: &Twist<T>) -> Momentum<T> {
         Momentum {
             linear: twist.linear.times(self.mass) + twist.angular.cross(self.first_moment),
             angular: self.inertia * twist.angular + self.first_moment.cross(twist.linear),
@@ -240,7 +240,7 @@ impl<T: Scalar> AddAssign for RigidBody<T> {
 }
 
 /// A rigid system that answers a momentum with the twist that takes it away.
-struct Balance<T> {
+pub(crate) struct Balance<T> {
     /// Inverse of the mass.
     per_mass: f64,
     /// Centre of mass.
@@ -256,7 +256,7 @@ impl<T: Scalar> Balance<T> {
     }
 
     #[inline(always)]
-    fn twist(&self, momentum: &Momentum<T>) -> Twist<T> {
+    pub(crate) fn twist(&self, momentum: &Momentum<T>) -> Twist<T> {
         let angular = self.angular(momentum);
         let linear = self.centre.cross(angular) - momentum.linear.times(self.per_mass);
         Twist { linear, angular }

@@ -1,6 +1,7 @@
 //! First derivatives of the base's angular velocity, in closed form.
 
 use super::{Momentum, MovedLink, RigidBody, sweep};
+use crate::kinematics::LinkPose;
 use crate::robot::{Gathered, Robot};
 use crate::scalar::Scalar;
 use crate::vec3::Vec3;
@@ -47,7 +48,7 @@ impl<T: Scalar> RateSlopes<T> {
     #[inline(always)]
     fn evaluate_as<const PLAIN: bool>(&mut self, robot: &Robot, positions: &[T], rates: &[T]) {
         self.links.clear();
-        let each = |link| self.links.push(link);
+        let each = |_: &LinkPose<'_, T>, link| self.links.push(link);
         let (balance, momentum) = sweep::<T, PLAIN>(robot, positions, rates, each);
         let base = balance.twist(&momentum);
         self.angular = base.angular;

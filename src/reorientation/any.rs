@@ -72,7 +72,7 @@ impl SearchedFamily for SinePolynomial {
 
     fn powers(&self, coefficients: &[f64], duration: f64) -> Option<Vec<Vec<f64>>> {
         let alpha = self.to_alpha(coefficients, duration);
-        Some(alpha.chunks_exact(self.joints()).map(<[f64]>::to_vec).collect())
+        Some(alpha.chunks_exact(self.leading().len()).map(<[f64]>::to_vec).collect())
     }
 }
 
@@ -117,7 +117,7 @@ impl FamilySpec {
         match self {
             Self::SinePolynomial { terms } => Arc::new(Reorientation::new(task, terms, accuracy)),
             Self::Spline { pieces, degree } => {
-                let family = Spline::new(&task.start.joints, &task.goal.joints, pieces, degree);
+                let family = task.splines(pieces, degree);
                 Arc::new(Reorientation::over(task, family, accuracy))
             }
         }
@@ -160,9 +160,9 @@ pub trait AnyReorientation: Debug + Send + Sync {
     /// The same as a value of its own.
     fn shared(&self) -> Arc<dyn AnyReorientation>;
 
-    /// Coefficients in rows, one per joint.
+    /// Coefficients in rows, one per joint that follows no other.
     fn rows(&self, coefficients: &[f64]) -> Vec<Vec<f64>> {
-        let own = coefficients.len() / self.task().robot.joint_count();
+        let own = coefficients.len() / self.task().robot.leading_count();
         coefficients.chunks_exact(own).map(<[f64]>::to_vec).collect()
     }
 }

@@ -98,7 +98,7 @@ pub(super) fn kept(
             }
         }
         // Left to the sweep.
-        kept.task = kept.task.with_robot(kept.sweep.robot[0].clone());
+        kept.task = kept.task.with_robot_file(kept.sweep.robot[0].get_ref().clone());
         return Ok((kept, files));
     }
     for file in &mut kept.sweep.task {
@@ -108,7 +108,7 @@ pub(super) fn kept(
         if let Some(text) = robot_text(&task, &document)? {
             let robot = format!("robots/{name}.toml");
             files.push((robot.clone(), text));
-            task = task.with_robot(Spanned::new(0..0, format!("../{robot}")));
+            task = task.with_robot_file(format!("../{robot}"));
         }
         let path = format!("tasks/{name}.toml");
         files.push((path.clone(), text(&TaskAlone { task }, &document)?));
@@ -119,7 +119,7 @@ pub(super) fn kept(
     {
         let robot = "robot.toml";
         files.push((robot.to_owned(), text));
-        kept.task = kept.task.with_robot(Spanned::new(0..0, robot.to_owned()));
+        kept.task = kept.task.with_robot_file(robot.to_owned());
     }
     Ok((kept, files))
 }

@@ -50,7 +50,8 @@ pub struct BestKnown {
     /// The least cost found over motions of any shape, where somebody looked for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free_form_j: Option<f64>,
-    /// Coefficients of bumps, or what control points add to the straight path \[rad\]; one row per joint.
+    /// Coefficients of bumps, or what control points add to the straight path \[rad\]; one row per joint that follows no
+    /// other.
     pub coefficients: Vec<Vec<f64>>,
     /// The command that found it.
     pub found_by: String,
@@ -172,7 +173,8 @@ impl fmt::Display for BestKnown {
 ///
 /// Boxes and accuracies are those of a search, not of the task.
 pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
-    let Task { robot, start, goal, limits, base_weight, goal_tolerance: _ } = &**problem.task();
+    let Task { robot, start, goal, limits, base_weight, goal_tolerance: _, path } =
+        &**problem.task();
     let turn = start.base.inverse() * goal.base;
     let components = [turn.w, turn.i, turn.j, turn.k];
     let first = components.into_iter().find(|component| component.abs() >= ZERO);
@@ -187,6 +189,10 @@ pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
         "limits": limits.0,
         "base_weight": base_weight,
     });
+    if let Some(path) = path.identity(robot) {
+        // Cones stand in inertial axes.
+        determinants["path"] = json!({ "limits": path, "start": start.base.coords.as_slice() });
+    }
     let spec = problem.spec();
     for (name, size) in
         [("terms", spec.terms()), ("pieces", spec.pieces()), ("degree", spec.degree())]

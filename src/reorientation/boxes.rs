@@ -10,7 +10,7 @@ use super::fitness::Reorientation;
 use crate::input::{Document, InputError, Positive, positive_interval};
 use crate::search::Rng;
 use crate::task::Task;
-use crate::trajectory::{Limits, Peaks, SinePolynomial};
+use crate::trajectory::{Family as _, Limits, Peaks, SinePolynomial};
 
 /// The `[trajectory.box]` table.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -163,12 +163,12 @@ impl Boxes {
 /// path in a wider box the turns of its swings add up like the steps of a random walk: with the root of the width.
 fn widening(task: &Arc<Task>) -> f64 {
     let problem = Reorientation::new(task.clone(), TERMS, COARSE);
-    let joints = problem.family().joints();
-    let straight = problem.net_rotation(&vec![0.0; TERMS * joints]).inverse();
+    let dimension = problem.family().dimension();
+    let straight = problem.net_rotation(&vec![0.0; dimension]).inverse();
     let missing = (straight * task.start.base.inverse() * task.goal.base).scaled_axis();
     let mut rng = Rng::new(1);
     let square = |_| {
-        let widths = NARROWEST[..TERMS].iter().cycle().take(TERMS * joints);
+        let widths = NARROWEST[..TERMS].iter().cycle().take(dimension);
         let path: Vec<f64> = widths.map(|&width| rng.uniform(-width, width)).collect();
         let turn = (straight * problem.net_rotation(&path)).scaled_axis();
         turn.dot(&missing).powi(2)
@@ -206,7 +206,7 @@ fn default_alpha(
         let mut unit = vec![0.0; family.dimension()];
         unit[k] = *width;
         let powers = family.to_alpha(&unit, duration);
-        for (sum, power) in alpha.iter_mut().zip(powers.iter().step_by(family.joints())) {
+        for (sum, power) in alpha.iter_mut().zip(powers.iter().step_by(family.leading().len())) {
             *sum += power.abs();
         }
     }

@@ -7,7 +7,8 @@ use super::measure::Tables;
 use crate::attitude::{Rollout, RotationCurvature, RotationSlopes};
 use crate::lanes::{LaneWork, Lanes};
 use crate::search::{
-    ErrorSlopes, Failure, LinearLimits, Linearisation, Multipliers, Piece, PieceId, TimedWeights,
+    Bent, ErrorSlopes, Failure, LinearLimits, Linearisation, Multipliers, Piece, PieceId,
+    TimedParts, TimedWeights,
 };
 use crate::trajectory::{Curve, Family, LocalPeak, Peak, duration_asked};
 
@@ -23,9 +24,22 @@ impl<F: Family> Reorientation<F> {
         let limits = &self.task().limits;
         let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
         let curves: Vec<_> = self.curves(coefficients).collect();
-        let durations =
-            places.into_iter().map(|place| self.duration_piece(&curves[place.joint], place));
-        self.terms().time_free(self.base_error_pieces(&slopes), durations.collect())
+        let mut durations: Vec<Piece> = places
+            .into_iter()
+            .map(|place| self.duration_piece(&curves[place.joint], place))
+            .collect();
+        let mut found = Vec::new();
+        let mut violation = 0.0;
+        if let Some(sampled) = self.sampled(coefficients) {
+            let asked = durations.iter().map(|piece| piece.value).fold(0.0, f64::max);
+            let pieces = sampled.pieces(self.width(), asked, self.joint_tracks());
+            durations.extend(pieces.durations().cloned());
+            found = pieces.terms();
+            violation = pieces.excess;
+        }
+        let mut linearisation = self.terms().time_free(self.base_error_pieces(&slopes), durations);
+        linearisation.terms.extend(found);
+        linearisation.with_violation(violation)
     }
 
     /// A subgradient of the cost of a motion that lasts `duration` seconds: its slopes by the coefficients, and that by the
@@ -34,11 +48,19 @@ impl<F: Family> Reorientation<F> {
         let weights = self.terms().timed();
         // The error and the excess over the ranges do not follow the duration.
         let untimed = TimedWeights { time: 0.0, ..weights };
+        let error = self.error_slopes(coefficients);
         let samples = self.samples(coefficients);
         let is_linear = self.family().is_linear();
         let limits = if is_linear { self.limits(&samples) } else { LinearLimits::default() };
-        let mut slopes = untimed.subgradient(&limits, &self.error_slopes(coefficients)).slopes;
+        let parts = TimedParts { limits, error, bent: Bent::default() };
+        let mut slopes = untimed.subgradient(&parts).slopes;
         let mut by_duration = weights.time;
+        if let Some(sampled) = self.sampled(coefficients) {
+            let pieces = sampled.pieces(self.width(), duration, 0);
+            let (more, by) = pieces.slopes_over(duration);
+            slopes += more;
+            by_duration += by;
+        }
         let peaks = self.family().peaks(&samples, coefficients);
         let curves: Vec<_> = self.curves(coefficients).collect();
         for order in 1..=3 {
@@ -86,7 +108,7 @@ impl<F: Family> Reorientation<F> {
     }
 
     fn rotation_slopes(&self, rollout: &Rollout<F>, coefficients: &[f64]) -> RotationSlopes {
-        self.width().run(Slopes { problem: self, coefficients, rollout })
+        rollout.slopes(self.width(), &self.task().robot, self.family(), coefficients)
     }
 
     /// The vector part of the base's error, and its slopes by the coefficients.
@@ -142,6 +164,13 @@ impl<F: Family> Reorientation<F> {
     }
 }
 
+impl<F: Family> Reorientation<F> {
+    /// How many tracks [`to_id`] has for peaks of joints.
+    fn joint_tracks(&self) -> u64 {
+        3 * self.family().joints() as u64
+    }
+}
+
 /// A peak is on the track of its joint and order, where it stands in normalised time.
 fn to_id(peak: &LocalPeak) -> PieceId {
     PieceId { track: (3 * peak.joint + peak.order - 1) as u64, place: peak.tau }
@@ -161,23 +190,6 @@ impl<F: Family> LaneWork for Sampling<'_, F> {
     fn run<T: Lanes>(self) {
         let sampler = &self.problem.tables().sampler;
         self.problem.family().sample::<T>(sampler, self.coefficients, self.samples);
-    }
-}
-
-/// The base's rotation over a path with its derivatives.
-struct Slopes<'a, F: Family> {
-    problem: &'a Reorientation<F>,
-    coefficients: &'a [f64],
-    rollout: &'a Rollout<F>,
-}
-
-impl<F: Family> LaneWork for Slopes<'_, F> {
-    type Output = RotationSlopes;
-
-    #[inline(always)]
-    fn run<T: Lanes>(self) -> RotationSlopes {
-        let (robot, family) = (&self.problem.task().robot, self.problem.family());
-        self.rollout.slopes::<T>(robot, family, self.coefficients)
     }
 }
 
@@ -218,12 +230,14 @@ impl<F: Family> Reorientation<F> {
         coefficients: &[f64],
         multipliers: &Multipliers,
     ) -> Result<DMatrix<f64>, Failure> {
-        let [error, durations] = &multipliers.terms[..] else {
+        // What is asked for on the way is taken for linear.
+        let [error, durations, ..] = &multipliers.terms[..] else {
             let found = multipliers.terms.len();
-            return Err(format!("found multipliers of {found} terms, expected 2").into());
+            return Err(format!("found multipliers of {found} terms, expected 2 at least").into());
         };
         let mut curvature = self.base_error_curvature(coefficients, &to_vector(error)?);
-        for (id, lambda) in durations {
+        let of_joints = durations.iter().filter(|(id, _)| id.track < self.joint_tracks());
+        for (id, lambda) in of_joints {
             let place = self.to_peak(id)?;
             let own = self.family().coefficients_of(place.joint);
             let block = self.piece_curvature(&coefficients[own.clone()], &place) * *lambda;

@@ -6,11 +6,12 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::UnitQuaternion;
 
 use super::accuracy::Accuracy;
-use super::measure::{Fitness, Given, Measure, Tables, Turn, Workspace};
+use super::measure::{Fitness, Given, Tables, Turn, Workspace};
+use super::path::{PathPeak, Sampled};
 use super::terms::{Terms, penalty};
 use crate::lanes::Width;
 use crate::search::Evaluation;
-use crate::task::Task;
+use crate::task::{PathLimits, Task};
 use crate::trajectory::{Family, Peaks, SinePolynomial, excess, longest_asked, powers};
 
 /// The reorientation task over one trajectory family.
@@ -39,6 +40,10 @@ pub struct Assessment {
     pub excess: [f64; 3],
     /// By how much joints leave their ranges, as a share of half the range of the one that does so most.
     pub range_excess: f64,
+    /// The excess over limits on the way, as a sum over what they are on.
+    pub path_excess: f64,
+    /// The largest of what has a limit on the way.
+    pub path: Vec<PathPeak>,
     /// By how much [`residual`](Self::residual) may be wrong \[rad\], where [that was estimated](Reorientation::certify);
     /// infinite where the motion is too wild to tell.
     pub residual_error: Option<f64>,
@@ -53,8 +58,7 @@ impl Reorientation {
     ///
     /// Panics without a term, a step or an interval, or when the task does not fit its robot.
     pub fn new(task: Arc<Task>, terms: usize, accuracy: Accuracy) -> Self {
-        let ranges: Vec<_> = task.robot.joints().map(|j| j.range).collect();
-        let family = SinePolynomial::new(&ranges, &task.start.joints, &task.goal.joints, terms);
+        let family = task.sine_polynomials(terms);
         Self::over(task, family, accuracy)
     }
 }
@@ -69,6 +73,10 @@ impl<F: Family> Reorientation<F> {
         assert!(accuracy.attitude_steps > 0 && accuracy.peak_intervals > 0, "no accuracy at all");
         assert_eq!(task.limits.0.len(), task.robot.joint_count(), "limits for every joint");
         assert_eq!(family.joints(), task.robot.joint_count(), "a path for every joint");
+        assert!(
+            task.robot.leading().eq(family.leading().iter().copied()),
+            "the same joints follow others in family and robot"
+        );
         let tables = Tables::new(&task, &family, accuracy);
         let fine = <[OnceLock<_>; 2]>::default();
         if accuracy == Accuracy::FINE {
@@ -103,6 +111,12 @@ impl<F: Family> Reorientation<F> {
     #[must_use]
     pub fn with_width(&self, width: Width) -> Self {
         Self { width: width.min(Width::widest()), ..self.clone() }
+    }
+
+    /// The same problem with nothing asked for on the way.
+    pub(super) fn relaxed(&self) -> Self {
+        let task = Task { path: PathLimits::default(), ..(*self.task).clone() };
+        Self::over(Arc::new(task), (*self.family).clone(), self.accuracy).with_width(self.width)
     }
 
     /// The same problem over the family's [coarser](Family::coarser) one.
@@ -166,22 +180,28 @@ impl<F: Family> Reorientation<F> {
         duration: Option<f64>,
     ) -> (UnitQuaternion<f64>, Assessment) {
         self.check(coefficients);
-        let mut workspace = self.workspace();
-        let measure = Measure { given: self.given(), coefficients, workspace: &mut workspace };
-        let off = self.width.run(measure);
+        let samples = self.samples(coefficients);
+        let off = self.error_after(self.net_rotation(coefficients));
         let attitude_error = off.imag().norm();
-        let peaks = self.family.peaks(&workspace.samples, coefficients);
-        let range_excess = self.range_excess(&workspace);
+        let peaks = self.family.peaks(&samples, coefficients);
+        let range_excess = self.range_excess(&samples);
+        let sampled = self.sampled(coefficients);
+        let way = sampled.as_ref().map(Sampled::way).unwrap_or_default();
         let (duration, excess) = match duration {
             Some(duration) => (duration, peaks.over(duration).excess(&self.task.limits)),
-            None => (peaks.shortest_duration(&self.task.limits), [0.0; 3]),
+            None => (peaks.shortest_duration(&self.task.limits).max(way.duration()), [0.0; 3]),
         };
+        let path_excess = way.excess(duration);
+        let beyond = range_excess + path_excess;
         let assessment = Assessment {
-            cost: self.terms().cost(attitude_error, duration, &excess, range_excess),
+            cost: self.terms().cost(attitude_error, duration, &excess, beyond)
+                + Terms::turns(&self.task.path.turn_weights, &way.turns),
             attitude_error,
             duration,
             excess,
             range_excess,
+            path_excess,
+            path: sampled.map(|sampled| sampled.peaks(duration)).unwrap_or_default(),
             residual_error: None,
             peaks: peaks.over(duration),
         };
@@ -203,20 +223,29 @@ impl<F: Family> Reorientation<F> {
         self.check(coefficients);
         let (attitude_error, largest) =
             self.width.run(Fitness { given: self.given(), coefficients, duration, workspace });
+        let way = self.sampled(coefficients).map(|sampled| sampled.way()).unwrap_or_default();
         let (duration, excess) = match duration {
             Some(duration) => {
                 let allowed = powers(duration);
                 (duration, excess(from_fn(|k| largest[k] / allowed[k])))
             }
-            None => (longest_asked(largest), [0.0; 3]),
+            None => (longest_asked(largest).max(way.duration()), [0.0; 3]),
         };
-        let beyond = self.range_excess(workspace);
-        let cost = self.terms().cost(attitude_error, duration, &excess, beyond);
+        let beyond = self.range_excess(&workspace.samples) + way.excess(duration);
+        let cost = self.terms().cost(attitude_error, duration, &excess, beyond)
+            + Terms::turns(&self.task.path.turn_weights, &way.turns);
         Evaluation { cost, violation: excess.iter().sum::<f64>() + beyond }
     }
 
-    fn range_excess(&self, workspace: &Workspace<F>) -> f64 {
-        self.family.range_excess(&workspace.samples, &self.tables.ranges)
+    /// The path, looked at where the task asks for something on the way.
+    pub(super) fn sampled<'a>(&'a self, coefficients: &'a [f64]) -> Option<Sampled<'a, F>> {
+        let tables = self.tables.path.as_ref()?;
+        let (family, arm) = (&*self.family, &self.tables.arm);
+        Some(Sampled::new(&self.task, family, tables, arm, self.width, coefficients))
+    }
+
+    fn range_excess(&self, samples: &F::Samples) -> f64 {
+        self.family.range_excess(samples, &self.tables.ranges)
     }
 
     fn check(&self, coefficients: &[f64]) {
@@ -255,8 +284,8 @@ impl Assessment {
         self.residual() + self.residual_error.unwrap_or_default() <= tolerance
     }
 
-    /// The last three terms of `J`, and one more of the same weight for joints out of their ranges.
+    /// The last three terms of `J`, and more of the same weight for joints out of their ranges and limits on the way.
     pub fn penalty(&self) -> f64 {
-        penalty(&self.excess, self.range_excess)
+        penalty(&self.excess, self.range_excess + self.path_excess)
     }
 }

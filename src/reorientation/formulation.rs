@@ -60,6 +60,8 @@ pub struct Formulated<F: Family = SinePolynomial> {
     make_coarser: fn(&Self) -> Option<Self>,
     /// What that made, once somebody asked.
     coarser: OnceLock<Option<Box<Self>>>,
+    /// The same without what is asked for on the way, once somebody asked.
+    relaxed: OnceLock<Box<Self>>,
 }
 
 impl Formulated {
@@ -72,11 +74,11 @@ impl Formulated {
         let family = task.family();
         let mut pairs: Vec<[f64; 2]> = match formulation {
             Formulation::Raw => {
-                boxes.alpha.iter().flat_map(|&a| vec![[-a, a]; family.joints()]).collect()
+                boxes.alpha.iter().flat_map(|&a| vec![[-a, a]; family.leading().len()]).collect()
             }
             Formulation::Scaled | Formulation::TimeFree => {
                 let joint: Vec<_> = boxes.coefficient.iter().map(|&c| [-c, c]).collect();
-                joint.repeat(family.joints())
+                joint.repeat(family.leading().len())
             }
         };
         if formulation != Formulation::TimeFree {
@@ -90,6 +92,7 @@ impl Formulated {
             powers,
             make_coarser: Self::with_fewer_terms,
             coarser: OnceLock::new(),
+            relaxed: OnceLock::new(),
         })
     }
 
@@ -99,7 +102,8 @@ impl Formulated {
         let joints = all.chunks_exact(self.task.family().terms());
         let pairs = joints.flat_map(|own| &own[..task.family().terms()]).copied().collect();
         let bounds = Bounds::new(pairs).ok()?;
-        Some(Self { task, bounds, coarser: OnceLock::new(), ..self.clone() })
+        let (coarser, relaxed) = (OnceLock::new(), OnceLock::new());
+        Some(Self { task, bounds, coarser, relaxed, ..self.clone() })
     }
 }
 
@@ -109,7 +113,9 @@ impl Formulated<Spline> {
     pub fn free_form(task: Arc<Reorientation<Spline>>) -> Result<Self, BoundsError> {
         let (family, mut pairs) = (task.family(), Vec::new());
         let mut straight = vec![0.0; family.knots().points()];
-        for (joint, [lower, upper]) in task.task().robot.joints().map(|j| j.range).enumerate() {
+        let ranges: Vec<[f64; 2]> = task.task().robot.joints().map(|joint| joint.range).collect();
+        for &joint in family.leading() {
+            let [lower, upper] = ranges[joint];
             family.write_points(joint, &[], &mut straight);
             let more = (upper - lower) / 10.0;
             let own = &straight[family.fixed()..straight.len() - family.fixed()];
@@ -122,6 +128,7 @@ impl Formulated<Spline> {
             powers: None,
             make_coarser: |own| Self::free_form(Arc::new(own.task.coarser()?)).ok(),
             coarser: OnceLock::new(),
+            relaxed: OnceLock::new(),
         })
     }
 
@@ -234,6 +241,18 @@ impl<F: Family> Problem for Formulated<F> {
         }
         let coarser = self.coarser.get_or_init(|| (self.make_coarser)(self).map(Box::new));
         coarser.as_deref().map(|coarser| coarser as &dyn Coarse)
+    }
+
+    fn relaxed(&self) -> Option<&dyn Problem> {
+        if self.task.task().path.is_empty() || self.timed().is_none() {
+            return None;
+        }
+        let relax = || {
+            let task = Arc::new(self.task.relaxed());
+            let (coarser, relaxed) = (OnceLock::new(), OnceLock::new());
+            Box::new(Self { task, coarser, relaxed, ..self.clone() })
+        };
+        Some(&**self.relaxed.get_or_init(relax))
     }
 
     fn slopes(&self) -> Option<Slopes<'_>> {

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::best_known::BestKnown;
+use super::excursions::Excursions;
 use super::exhibits;
 use super::fitness::Assessment;
-use super::subject::{DURATION, KIND, RESIDUAL, SAME_MOTION, TaskSubject};
+use super::subject::{DURATION, KIND, LARGEST_TURN, RESIDUAL, SAME_MOTION, TaskSubject};
 use crate::exhibit::Exhibits;
 use crate::experiment::schema::runs;
 use crate::experiment::{
@@ -81,7 +82,7 @@ impl Subject for TaskSubject {
         let shown = |name: &str, kind, meaning| Quantity::new(name, kind, meaning).shown(name);
         let lanes = "how many places of a path the processor evaluated at once; 4 and 8 give the same bits, 1 may give \
             others in the last digits";
-        vec![
+        let mut facts = vec![
             (
                 Quantity::new("robot", ValueKind::Text, "name of the robot"),
                 task.robot.name().into(),
@@ -91,7 +92,7 @@ impl Subject for TaskSubject {
                 shown(
                     "rate_limit_deg_s",
                     ValueKind::Real,
-                    "limit of all joints [°/s]; null where joints differ",
+                    "limit of all joints [°/s]; null where joints differ or one slides",
                 ),
                 limit(0),
             ),
@@ -120,7 +121,9 @@ impl Subject for TaskSubject {
                     .telling_provenance("Places of a path evaluated at once"),
                 problem.width().lanes().into(),
             ),
-        ]
+        ];
+        facts.extend(facts_of_the_way(task));
+        facts
     }
 
     fn measures(&self) -> Vec<Quantity> {
@@ -131,8 +134,14 @@ impl Subject for TaskSubject {
             Quantity::new(
                 COEFFICIENTS,
                 ValueKind::Reals,
-                "the motion's free coefficients, joint by joint: of bumps, or what control points add to the straight path",
+                "the motion's free coefficients, joint by joint but for those that follow others: of bumps, or what control points add to the straight path",
             ),
+            on_the_way(LARGEST_TURN, "largest turn of the base from its attitude at the start [°]"),
+            on_the_way(
+                "clearance_m",
+                "least distance between bodies [m]; negative where they overlap",
+            ),
+            on_the_way("path_excess", "the sum of the relative excesses over limits on the way"),
         ]
     }
 
@@ -150,7 +159,7 @@ impl Subject for TaskSubject {
                 "the best motion swings too often for the base's end to be evaluated: its box is too wide",
             ));
         }
-        Ok(Some(Judgement { cost: motion.cost, measures: measured(&motion, coefficients) }))
+        Ok(Some(Judgement { cost: motion.cost, measures: self.measured(&motion, coefficients) }))
     }
 
     fn cost_symbol(&self) -> &'static str {
@@ -191,12 +200,87 @@ impl Subject for TaskSubject {
     }
 }
 
-/// The values of the measures.
-fn measured(motion: &Assessment, coefficients: Vec<f64>) -> Vec<Value> {
+impl TaskSubject {
+    /// The values of the measures. How far a motion goes on the way takes longer to tell than many a cost, so it is told only
+    /// where the task asks for something there.
+    fn measured(&self, motion: &Assessment, coefficients: Vec<f64>) -> Vec<Value> {
+        let problem = self.reorientation();
+        let excursions = (!problem.task().path.is_empty())
+            .then(|| Excursions::on_the_way(problem, &coefficients, motion.duration));
+        let excursions = excursions.as_ref();
+        let closest = excursions.and_then(|found| found.closest.as_ref());
+        vec![
+            motion.residual().to_degrees().into(),
+            motion.duration.into(),
+            motion.penalty().into(),
+            coefficients.into(),
+            excursions.map(|found| found.base_turn.to_degrees()).into(),
+            closest.map(|closest| closest.distance).into(),
+            excursions.map(|_| motion.path_excess).into(),
+        ]
+    }
+}
+
+/// A measure of what is on the way.
+fn on_the_way(name: &str, meaning: &str) -> Quantity {
+    let meaning = format!("{meaning}; null where the task asks for nothing on the way");
+    Quantity::new(name, ValueKind::Real, &meaning)
+}
+
+/// What a task asks for on the way. Tables show what it asks for.
+fn facts_of_the_way(task: &Task) -> Vec<(Quantity, Value)> {
+    let path = &task.path;
+    let fact = |name: &str, kind, meaning: &str, value: Value| {
+        let meaning = format!("{meaning}; null without");
+        let quantity = Quantity::new(name, kind, &meaning);
+        let is_asked = value != Value::None;
+        (if is_asked { quantity.shown(name) } else { quantity }, value)
+    };
+    let real = |name: &str, meaning: &str, value: Option<f64>| {
+        fact(name, ValueKind::Real, meaning, value.into())
+    };
+    let [largest, mean] = path.turn_weights.map(|weight| (weight > 0.0).then_some(weight));
+    let turn = path.base_turn.or(largest).or(mean).map(|_| path.turn_from.name());
+    let cone = match &path.base_cones[..] {
+        [cone] => Some(cone.angle),
+        _ => None,
+    };
+    let torque = path.torque.as_ref().and_then(|torque| {
+        let first = torque.first().copied()?;
+        torque.iter().all(|limit| *limit == first).then_some(first)
+    });
+    let clearance = path.clearance.as_ref().map(|clearance| clearance.least);
     vec![
-        motion.residual().to_degrees().into(),
-        motion.duration.into(),
-        motion.penalty().into(),
-        coefficients.into(),
+        real("base_turn_limit_deg", "limit on the base's turn [°]", path.base_turn.map(in_degrees)),
+        fact(
+            "base_turn_from",
+            ValueKind::Text,
+            "what its turn is measured from where it has a limit or a weight, `start`, `goal` or `nearer` of the two",
+            turn.map_or(Value::None, Value::from),
+        ),
+        real(
+            "base_cone_deg",
+            "angle of the one cone for an axis of the base [°]",
+            cone.map(in_degrees),
+        ),
+        real(
+            "base_rate_limit_deg_s",
+            "limit on the base's rate [°/s]",
+            path.base_rate.map(in_degrees),
+        ),
+        real("tool_speed_limit_m_s", "limit on the tool's speed [m/s]", path.tool_speed),
+        real(
+            "torque_limit_n_m",
+            "limit of all joints on torques [N·m]; null where joints differ",
+            torque,
+        ),
+        real("clearance_limit_m", "least distance between bodies that is asked for [m]", clearance),
+        real("weight_largest_turn", "what a degree of the largest turn adds to the cost", largest),
+        real("weight_mean_turn", "what a degree of the mean turn adds to the cost", mean),
     ]
+}
+
+/// As written, without the rounding of its way through radians.
+fn in_degrees(radians: f64) -> f64 {
+    (radians.to_degrees() * 1e9).round() / 1e9
 }

@@ -1,11 +1,15 @@
 //! What is known of a motion, as JSON: the fields that `plan --json` and `replay --json` share.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::any::AnyReorientation;
-use super::excursions::Excursions;
+use super::excursions::{Excursions, Used};
 use super::fitness::Assessment;
+use crate::robot::{Robot, ShapeSource};
 use crate::task::Task;
+use crate::trajectory::Peaks;
 
 /// Intervals in which a motion is looked at between its start and its end.
 const LOOKS: usize = 2000;
@@ -30,30 +34,43 @@ pub struct AssessmentJson {
     /// Null where it was not estimated, or the motion is too wild to.
     residual_error_deg: Option<f64>,
     penalty: f64,
-    peaks: PeaksDeg,
+    peaks: PeaksJson,
 }
 
+/// Largest derivatives, joint by joint.
 #[derive(Debug, Serialize)]
-struct PeaksDeg {
-    rate_deg_s: Vec<f64>,
-    acceleration_deg_s2: Vec<f64>,
-    jerk_deg_s3: Vec<f64>,
+#[serde(untagged)]
+enum PeaksJson {
+    /// Of robots whose joints all turn.
+    Degrees { rate_deg_s: Vec<f64>, acceleration_deg_s2: Vec<f64>, jerk_deg_s3: Vec<f64> },
+    /// In degrees or metres, and seconds.
+    ByJoint { unit: Vec<&'static str>, rate: Vec<f64>, acceleration: Vec<f64>, jerk: Vec<f64> },
 }
 
-impl From<&Assessment> for AssessmentJson {
-    fn from(assessment: &Assessment) -> Self {
-        let all = |k: usize| assessment.peaks.0.iter().map(|p| p[k].value.to_degrees()).collect();
+impl PeaksJson {
+    fn new(peaks: &Peaks, robot: &Robot) -> Self {
+        let all = |order: usize| -> Vec<f64> {
+            let peaks = robot.joints().zip(&peaks.0);
+            peaks.map(|(joint, peaks)| joint.kind.to_file_units(peaks[order].value)).collect()
+        };
+        if robot.sliding_joint().is_some() {
+            let unit = robot.joints().map(|joint| joint.kind.file_unit()).collect();
+            return Self::ByJoint { unit, rate: all(0), acceleration: all(1), jerk: all(2) };
+        }
+        Self::Degrees { rate_deg_s: all(0), acceleration_deg_s2: all(1), jerk_deg_s3: all(2) }
+    }
+}
+
+impl AssessmentJson {
+    /// Of a motion of a robot.
+    pub fn new(assessment: &Assessment, robot: &Robot) -> Self {
         Self {
             j: assessment.cost,
             t_f: assessment.duration,
             residual_deg: assessment.residual().to_degrees(),
             residual_error_deg: assessment.residual_error.map(f64::to_degrees),
             penalty: assessment.penalty(),
-            peaks: PeaksDeg {
-                rate_deg_s: all(0),
-                acceleration_deg_s2: all(1),
-                jerk_deg_s3: all(2),
-            },
+            peaks: PeaksJson::new(&assessment.peaks, robot),
         }
     }
 }
@@ -65,16 +82,65 @@ pub struct ExcursionsJson {
     largest_base_turn_at: f64,
     largest_base_rate_deg_s: f64,
     range_used: Vec<f64>,
+    #[serde(flatten)]
+    way: WayJson,
 }
 
+/// What else happens on the way, and how much of all limits is used.
+#[derive(Debug, Serialize)]
+pub(super) struct WayJson {
+    largest_tool_speed_m_s: f64,
+    /// N·m of joints that turn, N of those that slide.
+    largest_torque_n_m: Vec<f64>,
+    /// Null where no two bodies could meet; negative where they overlap.
+    clearance_m: Option<f64>,
+    clearance_between: Option<[String; 2]>,
+    clearance_at: Option<f64>,
+    /// Whether shapes are `stated` or `derived`.
+    shapes: Option<ShapeSource>,
+    /// Of every limit the share that is used by what uses most of it, null where bodies touch.
+    limits_used: BTreeMap<&'static str, Option<f64>>,
+    not_checked: [&'static str; 4],
+}
+
+/// What no motion is checked for.
+pub const NOT_CHECKED: [&str; 4] =
+    ["flexibility of joints and links", "contact", "dynamics of actuators", "orbital motion"];
+
 impl ExcursionsJson {
-    /// Of a motion of a task.
-    pub fn new(excursions: &Excursions, task: &Task) -> Self {
+    /// Of a motion of a task with these peaks.
+    pub fn new(excursions: &Excursions, task: &Task, peaks: &Peaks) -> Self {
         Self {
             largest_base_turn_deg: excursions.base_turn.to_degrees(),
             largest_base_turn_at: excursions.base_turn_at,
             largest_base_rate_deg_s: excursions.base_rate.to_degrees(),
             range_used: excursions.range_used(task),
+            way: WayJson::new(excursions, task, peaks),
+        }
+    }
+}
+
+impl WayJson {
+    /// Of a motion of a task with these peaks.
+    pub(super) fn new(excursions: &Excursions, task: &Task, peaks: &Peaks) -> Self {
+        let closest = excursions.closest.as_ref();
+        let ranges = excursions.range_used(task).into_iter().fold(0.0, f64::max);
+        let of_joints = [("rate", 0), ("acceleration", 1), ("jerk", 2)].map(|(limit, order)| {
+            let shares = peaks.0.iter().zip(&task.limits.0);
+            let shares = shares.map(|(peaks, limits)| peaks[order].value / limits[order]);
+            (limit, Some(shares.fold(0.0, f64::max)))
+        });
+        let of_joints = of_joints.into_iter().chain([("range", Some(ranges))]);
+        let used = |used: &Used| (used.limit.name(), used.share.is_finite().then_some(used.share));
+        Self {
+            largest_tool_speed_m_s: excursions.tool_speed,
+            largest_torque_n_m: excursions.torques.clone(),
+            clearance_m: closest.map(|closest| closest.distance),
+            clearance_between: closest.map(|closest| closest.between.clone()),
+            clearance_at: closest.map(|closest| closest.at),
+            shapes: closest.map(|closest| closest.shapes),
+            limits_used: of_joints.chain(excursions.used.iter().map(used)).collect(),
+            not_checked: NOT_CHECKED,
         }
     }
 }

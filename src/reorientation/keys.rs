@@ -8,7 +8,7 @@ use toml::Spanned;
 use super::family::FamilyName;
 use super::poses::RandomPoses;
 use super::settings::{DEFAULTS, TrajectoryTable};
-use crate::input::{Document, Fraction, InputError, Positive, count, non_empty};
+use crate::input::{Document, Fraction, InputError, NonNegative, Positive, count, non_empty};
 use crate::task::{PoseTable, TaskTable};
 
 /// A file's keys that are the task's.
@@ -55,6 +55,30 @@ pub(super) struct Sweep {
     /// The same limit for all joints \[°/s³\].
     #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub(super) jerk_limit_deg_s3: Vec<Positive>,
+    /// The largest turn of the base on the way \[°\].
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) base_turn_deg: Vec<Positive>,
+    /// Half the opening angle of the task's one cone \[°\].
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) base_cone_deg: Vec<Spanned<Positive>>,
+    /// The largest angular speed of the base \[°/s\].
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) base_rate_deg_s: Vec<Positive>,
+    /// The largest speed of the tool \[m/s\].
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) tool_speed_m_s: Vec<Positive>,
+    /// The same limit for all joints \[N·m\].
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) torque_n_m: Vec<Positive>,
+    /// How far bodies have to stay apart \[m\].
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) clearance_m: Vec<NonNegative>,
+    /// What a degree of the base's largest turn adds to the cost.
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) weight_largest_turn: Vec<NonNegative>,
+    /// What a degree of the base's mean turn adds to the cost.
+    #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
+    pub(super) weight_mean_turn: Vec<NonNegative>,
     /// Families of motions.
     #[serde(deserialize_with = "non_empty", skip_serializing_if = "Vec::is_empty")]
     pub(super) family: Vec<FamilyName>,
@@ -93,7 +117,7 @@ pub(super) struct Sizes<'a> {
 }
 
 impl TaskKeys {
-    /// The keys of an experiment file; what they leave out is the paper's.
+    /// The keys of an experiment file; what they leave out of the task is that of its robot's own.
     pub(super) fn read(keys: &[&str], document: &Document) -> Result<Self, InputError> {
         let Self { task, trajectory, sweep } = document.parse_keys(keys, &[DEFAULTS])?;
         if let (false, Some(place)) = (sweep.task.is_empty(), document.key("task")?) {
@@ -149,6 +173,14 @@ impl Sweep {
             self.rate_limit_deg_s.len(),
             self.acceleration_limit_deg_s2.len(),
             self.jerk_limit_deg_s3.len(),
+            self.base_turn_deg.len(),
+            self.base_cone_deg.len(),
+            self.base_rate_deg_s.len(),
+            self.tool_speed_m_s.len(),
+            self.torque_n_m.len(),
+            self.clearance_m.len(),
+            self.weight_largest_turn.len(),
+            self.weight_mean_turn.len(),
             self.budget.len(),
             self.pose.len(),
         ];

@@ -9,7 +9,7 @@ use super::sweep;
 use crate::experiment::{Instance, Kind, Source};
 use crate::input::{Document, InputError};
 
-/// The reorientation task. What an experiment file leaves out is the paper's.
+/// The reorientation task. What an experiment file leaves out is that of its robot's own task.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ReorientationTask;
 
@@ -41,7 +41,9 @@ impl Source for TaskKeys {
     }
 
     fn written(&self) -> Result<String, String> {
-        let task = self.sweep.task.is_empty().then_some(&self.task);
+        // Robots of a sweep that come with a task each have their own where the file states nothing.
+        let stated = (!self.sweep.robot.is_empty()).then(|| self.task.stated());
+        let task = self.sweep.task.is_empty().then(|| stated.as_ref().unwrap_or(&self.task));
         let written = WrittenKeys { task, trajectory: &self.trajectory, sweep: &self.sweep };
         toml::to_string(&written).map_err(|error| error.to_string())
     }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::UnitQuaternion;
 
 use super::accuracy::Accuracy;
+use super::path::PathTables;
 use crate::attitude::{Midpoints, Rollout};
 use crate::lanes::{LaneWork, Lanes};
 use crate::momentum::{Arm, JointState};
@@ -15,12 +16,14 @@ use crate::trajectory::{Family, SinePolynomial, longest_asked, powers};
 /// All that does not depend on the motion, worked out once.
 #[derive(Debug)]
 pub(super) struct Tables<F: Family> {
-    arm: Arm,
+    pub(super) arm: Arm,
     pub(super) rollout: Rollout<F>,
     pub(super) sampler: F::Sampler,
     /// For differences that need a few digits only.
     pub(super) rough: Rollout<F>,
     pub(super) midpoints: Midpoints<F>,
+    /// Where the task asks for something on the way.
+    pub(super) path: Option<PathTables<F>>,
     /// The joints' ranges.
     pub(super) ranges: Vec<[f64; 2]>,
 }
@@ -39,6 +42,7 @@ impl<F: Family> Tables<F> {
             rough: Rollout::of_panels(family, ROUGH_PANELS),
             sampler: family.sampler(accuracy.peak_intervals),
             midpoints: Midpoints::new(family, CURVATURE_STEPS),
+            path: PathTables::new(task, family, accuracy),
             ranges: task.robot.joints().map(|joint| joint.range).collect(),
         })
     }
@@ -106,7 +110,10 @@ impl<F: Family> LaneWork for Fitness<'_, F> {
     #[inline(always)]
     fn run<T: Lanes>(self) -> (f64, [f64; 3]) {
         let Self { given, coefficients, duration, workspace } = self;
-        let error = Measure { given, coefficients, workspace }.run::<T>().imag().norm();
+        let Workspace { samples, joints } = workspace;
+        given.family.sample::<T>(&given.tables.sampler, coefficients, samples);
+        let net = Turn { given, coefficients, joints }.run::<T>();
+        let error = given.error_after(net).imag().norm();
         let matters = |known: [f64; 3]| match duration {
             // Within a limit it does not matter how far.
             Some(duration) => {
@@ -116,28 +123,8 @@ impl<F: Family> LaneWork for Fitness<'_, F> {
             None => powers(longest_asked(known)),
         };
         let (limits, family) = (&given.task.limits, given.family);
-        let samples = &mut workspace.samples;
         let largest = family.largest_ratio::<T>(samples, limits, matters, coefficients);
         (error, largest)
-    }
-}
-
-/// Samples a path, and finds the rotation from the goal to where the base ends, `δq_b` of eq. 20.
-pub(super) struct Measure<'a, F: Family> {
-    pub(super) given: Given<'a, F>,
-    pub(super) coefficients: &'a [f64],
-    pub(super) workspace: &'a mut Workspace<F>,
-}
-
-impl<F: Family> LaneWork for Measure<'_, F> {
-    type Output = UnitQuaternion<f64>;
-
-    #[inline(always)]
-    fn run<T: Lanes>(self) -> UnitQuaternion<f64> {
-        let Self { given, coefficients, workspace: Workspace { samples, joints, .. } } = self;
-        given.family.sample::<T>(&given.tables.sampler, coefficients, samples);
-        let net = Turn { given, coefficients, joints }.run::<T>();
-        given.error_after(net)
     }
 }
 

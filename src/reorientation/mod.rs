@@ -22,13 +22,17 @@ mod json;
 mod keys;
 #[cfg(feature = "harness")]
 mod kind;
+#[cfg(feature = "harness")]
+mod limited;
 mod measure;
 mod motion;
+mod path;
 mod planner;
 #[cfg(feature = "harness")]
 mod poses;
 mod published;
 mod reach;
+mod replayed;
 mod settings;
 mod spline_box;
 #[cfg(feature = "harness")]
@@ -44,28 +48,33 @@ pub use accuracy::Accuracy;
 pub use any::{AnyReorientation, SearchedFamily};
 pub use best_known::{BestKnown, fingerprint};
 pub use boxes::Boxes;
-pub use excursions::Excursions;
+pub use excursions::{Closest, Excursions, PathLimit, Used};
 #[cfg(feature = "harness")]
 pub use exhibits::{FoundBy, motion_scene};
 #[cfg(all(feature = "cli", feature = "harness"))]
 pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]
 pub use export::write_motions;
-pub use export::{ExportError, INTERVALS, MotionFormat, write_motion};
+pub use export::{ExportError, INTERVALS, MotionFormat, intervals, write_motion};
 pub use family::{FamilyName, FamilySpec};
 pub use fitness::{Assessment, Reorientation};
 pub use formulation::{Formulated, Formulation};
-pub use json::{AssessmentJson, ExcursionsJson, ShapeJson};
+pub use json::{AssessmentJson, ExcursionsJson, NOT_CHECKED, ShapeJson};
 #[cfg(feature = "harness")]
 pub use kind::ReorientationTask;
 pub use measure::Workspace;
 pub use motion::{JointMotion, Motion};
+pub use path::{PathPeak, Watched};
 pub use planner::{
     Asked, FamilyChoice, OtherFamily, PlanError, Planned, PlannedJson, Planner, Remark, Search,
     Spent, Walls,
 };
 pub use published::{Published, Reading, ReplayFile};
 pub use reach::{Block, Reach};
+pub use replayed::{
+    AngleUnit, Fault, FaultKind, GivenTrajectory, JointPeaks, PeakJson, PointReading, ReadPath,
+    Replayed, ReplayedJson, TrajectoryError,
+};
 pub use settings::{TaskFile, TaskProblem, TrajectoryTable};
 pub use spline_box::SplineBox;
 #[cfg(feature = "harness")]

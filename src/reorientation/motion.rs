@@ -7,6 +7,7 @@ use nalgebra::UnitQuaternion;
 
 use super::fitness::Reorientation;
 use crate::attitude::increments;
+use crate::robot::JointKind;
 use crate::trajectory::{Curve as _, Family};
 
 /// Intervals are cut into ever more steps until the base's attitudes change by no more than this angle \[rad\], or there are so
@@ -30,11 +31,18 @@ pub struct Motion {
 pub struct JointMotion {
     /// The joint's name.
     pub name: String,
-    /// Angle \[rad\], rate \[rad/s\], acceleration \[rad/s²\] and jerk \[rad/s³\] at each time.
+    /// Whether it turns or slides.
+    pub kind: JointKind,
+    /// Position \[rad or m\] and its first three derivatives by time \[s\] at each time.
     pub derivatives: Vec<[f64; 4]>,
 }
 
 impl Motion {
+    /// Whether a joint slides.
+    pub(super) fn slides(&self) -> bool {
+        self.joints.iter().any(|joint| joint.kind == JointKind::Prismatic)
+    }
+
     /// Samples the path with these coefficients at `intervals + 1` times over `duration` seconds.
     pub fn sample<F: Family>(
         problem: &Reorientation<F>,
@@ -52,7 +60,8 @@ impl Motion {
                 let values = path.derivatives::<4>(tau);
                 from_fn(|k| values[k] / duration.powi(k as i32))
             });
-            JointMotion { name: joint.name.to_owned(), derivatives: derivatives.collect() }
+            let (name, kind) = (joint.name.to_owned(), joint.kind);
+            JointMotion { name, kind, derivatives: derivatives.collect() }
         });
         let write = |tau, angles: &mut [f64], rates: &mut [f64]| {
             for ((angle, rate), curve) in angles.iter_mut().zip(rates).zip(&curves) {
@@ -99,7 +108,7 @@ impl Motion {
 }
 
 /// `[yaw, pitch, roll]` \[rad\], the pitch within a quarter turn.
-fn zyx(attitude: &UnitQuaternion<f64>) -> [f64; 3] {
+pub(super) fn zyx(attitude: &UnitQuaternion<f64>) -> [f64; 3] {
     let (roll, pitch, yaw) = attitude.euler_angles();
     [yaw, pitch, roll]
 }

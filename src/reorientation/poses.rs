@@ -5,8 +5,8 @@ use std::num::NonZeroU64;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::input::{count, positive, share};
-use crate::robot::Robot;
+use crate::input::{count, optional_positive, positive, share};
+use crate::robot::{JointKind, Robot};
 use crate::search::Rng;
 use crate::task::{PoseTable, PostureParts};
 
@@ -30,6 +30,9 @@ pub(super) struct RandomPoses {
     /// Largest change of a joint from start to goal \[°\].
     #[serde(deserialize_with = "positive")]
     pub joint_change_deg: f64,
+    /// The same of a joint that slides \[m\]; anywhere in its share of the range without one.
+    #[serde(deserialize_with = "optional_positive", skip_serializing_if = "Option::is_none")]
+    pub joint_change_m: Option<f64>,
     /// Largest turn of the base from start to goal \[°\].
     #[serde(deserialize_with = "positive")]
     pub turn_deg: f64,
@@ -42,6 +45,7 @@ impl Default for RandomPoses {
             seed: NonZeroU64::MIN,
             range_share: 0.8,
             joint_change_deg: 60.0,
+            joint_change_m: None,
             turn_deg: 30.0,
         }
     }
@@ -50,7 +54,7 @@ impl Default for RandomPoses {
 impl RandomPoses {
     /// Draws the pairs. Joints start uniformly within their share of the range and end uniformly
     /// within the allowed change of that; the base turns about an axis uniform over all directions, by
-    /// an angle uniform from zero, and ends along the inertial axes.
+    /// an angle uniform from zero, and ends along the inertial axes. Joints that follow others are left out.
     pub(super) fn draw(&self, robot: &Robot) -> Vec<PoseTable> {
         let mut rng = Rng::new(self.seed.get());
         (0..self.count.get()).map(|_| self.pose(robot, &mut rng)).collect()
@@ -58,13 +62,16 @@ impl RandomPoses {
 
     fn pose(&self, robot: &Robot, rng: &mut Rng) -> PoseTable {
         let (mut start, mut goal) = (Vec::new(), Vec::new());
-        for joint in robot.joints() {
-            let [lower, upper] = joint.range.map(f64::to_degrees);
+        for joint in robot.joints().filter(|joint| joint.follows.is_none()) {
+            let [lower, upper] = joint.range.map(|end| joint.kind.to_file_units(end));
             let middle = f64::midpoint(lower, upper);
             let half = self.range_share * (upper - lower) / 2.0;
             let [lower, upper] = [middle - half, middle + half];
             let from = rng.uniform(lower, upper);
-            let change = self.joint_change_deg;
+            let change = match joint.kind {
+                JointKind::Revolute => self.joint_change_deg,
+                JointKind::Prismatic => self.joint_change_m.unwrap_or(f64::INFINITY),
+            };
             let to = rng.uniform(lower.max(from - change), upper.min(from + change));
             start.push(rounded(from).clamp(lower, upper));
             goal.push(rounded(to).clamp(lower, upper));
@@ -73,7 +80,10 @@ impl RandomPoses {
         let angle = rng.uniform(0.0, self.turn_deg).to_radians();
         let (roll, pitch, yaw) = UnitQuaternion::from_axis_angle(&axis, angle).euler_angles();
         let base = [yaw, pitch, roll].map(|angle| rounded(angle.to_degrees()));
-        PoseTable { start: PostureParts::new(start, base), goal: PostureParts::new(goal, [0.0; 3]) }
+        PoseTable {
+            start: PostureParts::new(robot, start, base),
+            goal: PostureParts::new(robot, goal, [0.0; 3]),
+        }
     }
 }
 
@@ -87,7 +97,7 @@ fn direction(rng: &mut Rng) -> Unit<Vector3<f64>> {
     }
 }
 
-/// To a millionth of a degree.
-fn rounded(degrees: f64) -> f64 {
-    (degrees * 1e6).round() / 1e6
+/// To a millionth of a degree or metre.
+fn rounded(position: f64) -> f64 {
+    (position * 1e6).round() / 1e6
 }

@@ -13,6 +13,7 @@ use super::fitness::{Assessment, Reorientation, attitude_error};
 use super::settings::{DEFAULTS, TrajectoryTable, check_terms};
 use crate::input::{Document, Finite, InputError, Positive};
 use crate::momentum::base_twist;
+use crate::robot::Robot;
 use crate::task::{Posture, Task, TaskTable};
 use crate::trajectory::{Path, Peak, Peaks};
 
@@ -118,7 +119,7 @@ impl ReplayFile {
             let message = format!("found {duration} s, expected {SHORTEST} to {LONGEST} s");
             return Err(document.error_at(motion.t_f.span(), message, None));
         }
-        let shape = self.shape(task.robot.joint_count(), document)?;
+        let shape = self.shape(&task.robot, document)?;
         let (problem, coefficients) = match self.trajectory.family() {
             FamilyName::SinePolynomial => {
                 let terms = shape.free();
@@ -151,9 +152,10 @@ impl ReplayFile {
         Ok(Published { problem, coefficients, duration, cost })
     }
 
-    /// The shape as given, with as many values as the robot has joints.
-    fn shape(&self, joints: usize, document: &Document) -> Result<Shape, InputError> {
-        let motion = self.motion.get_ref();
+    /// The shape as given, with as many values as the robot has joints that follow none.
+    fn shape(&self, robot: &Robot, document: &Document) -> Result<Shape, InputError> {
+        let (motion, joints) = (self.motion.get_ref(), robot.leading_count());
+        let own = if joints < robot.joint_count() { " that follows no other" } else { "" };
         let error = |span, message: String| Err(document.error_at(span, message, None));
         match (&motion.alpha6, &motion.alpha7, &motion.coefficients) {
             (Some(alpha6), Some(alpha7), None) => {
@@ -161,7 +163,7 @@ impl ReplayFile {
                     let found = list.get_ref().len();
                     if found != joints {
                         let message =
-                            format!("found {found} values, expected {joints}, one per joint");
+                            format!("found {found} values, expected {joints}, one per joint{own}");
                         return error(list.span(), message);
                     }
                 }
@@ -173,7 +175,7 @@ impl ReplayFile {
                 let terms = rows.first().map_or(0, Vec::len);
                 if terms == 0 || rows.len() != joints || rows.iter().any(|row| row.len() != terms) {
                     let message = format!(
-                        "expected {joints} rows, one per joint, of equally many coefficients"
+                        "expected {joints} rows, one per joint{own}, of equally many coefficients"
                     );
                     return error(list.span(), message);
                 }
@@ -236,6 +238,8 @@ impl Published {
             duration: self.duration,
             excess,
             range_excess: 0.0,
+            path_excess: 0.0,
+            path: Vec::new(),
             residual_error: None,
             peaks,
         })

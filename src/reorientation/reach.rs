@@ -138,11 +138,13 @@ impl BaseTurns {
         let ranges: Vec<[f64; 2]> = task.robot.joints().map(|joint| joint.range).collect();
         let mut rng = Rng::new(SEED);
         let mut draw = || -> Vec<f64> {
-            ranges.iter().map(|[lower, upper]| rng.uniform(*lower, *upper)).collect()
+            let drawn = ranges.iter().map(|[lower, upper]| rng.uniform(*lower, *upper));
+            with_followers(task, drawn)
         };
         let drawn: Vec<Vec<f64>> = (0..CONFIGURATIONS).map(|_| draw()).collect();
         let turns: Vec<Vec<Vector3<f64>>> = drawn.iter().map(|at| turns_at(task, at)).collect();
-        let all = || (0..ranges.len()).map(|joint| turns.iter().map(move |turns| turns[joint]));
+        let leading: Vec<usize> = task.robot.leading().collect();
+        let all = || (0..leading.len()).map(|joint| turns.iter().map(move |turns| turns[joint]));
         let largest: Vec<f64> =
             all().map(|own| own.map(|turn| turn.norm()).fold(0.0, f64::max)).collect();
         let least = NOTHING * largest.iter().copied().fold(0.0, f64::max);
@@ -171,14 +173,22 @@ impl BaseTurns {
     }
 }
 
-/// By how much each joint turns the base per unit of its rate.
+/// Positions of all joints, those that follow others where these have them.
+fn with_followers(task: &Task, positions: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut positions: Vec<f64> = positions.collect();
+    task.robot.place_followers(&mut positions);
+    positions
+}
+
+/// By how much each joint that follows no other turns the base per unit of its rate.
 fn turns_at(task: &Task, positions: &[f64]) -> Vec<Vector3<f64>> {
     let turn = |joint| {
         let mut rates = vec![0.0; positions.len()];
         rates[joint] = 1.0;
+        task.robot.drive_followers(&mut rates);
         base_twist(&task.robot, positions, &rates).angular.into()
     };
-    (0..positions.len()).map(turn).collect()
+    task.robot.leading().map(turn).collect()
 }
 
 /// The largest angular speed of the base: of configurations drawn, with their turns, and from there by steps at random, ever
@@ -189,7 +199,8 @@ fn fastest(
     drawn: impl Iterator<Item = (Vec<f64>, Vec<Vector3<f64>>)>,
 ) -> f64 {
     let speed = |turns: &[Vector3<f64>]| -> f64 {
-        turns.iter().zip(&task.limits.0).map(|(turn, limits)| limits[0] * turn.norm()).sum()
+        let limits = task.robot.leading().map(|joint| task.limits.0[joint][0]);
+        turns.iter().zip(limits).map(|(turn, rate)| rate * turn.norm()).sum()
     };
     let all = drawn.map(|(at, turns)| (speed(&turns), at));
     let Some((mut best, mut here)) = all.max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
@@ -202,7 +213,7 @@ fn fastest(
             let width = share * (upper - lower);
             (at + rng.uniform(-width, width)).clamp(*lower, *upper)
         };
-        let there: Vec<f64> = here.iter().zip(ranges).map(step).collect();
+        let there = with_followers(task, here.iter().zip(ranges).map(step));
         let found = speed(&turns_at(task, &there));
         if found > best {
             (best, here) = (found, there);
@@ -229,13 +240,15 @@ fn is_holonomic(task: &Task) -> bool {
             .collect();
         let steps = increments(&task.robot, LOOP_STEPS, |tau, positions, rates| {
             for ((position, rate), [middle, slow, first, fast, second]) in
-                positions.iter_mut().zip(rates).zip(&waves)
+                positions.iter_mut().zip(&mut *rates).zip(&waves)
             {
                 let [(s, c), (s2, c2)] =
                     [TAU * tau + first, 2.0 * TAU * tau + second].map(f64::sin_cos);
                 *position = middle + slow * s + fast * s2;
                 *rate = TAU * (slow * c + 2.0 * fast * c2);
             }
+            task.robot.place_followers(positions);
+            task.robot.drive_followers(rates);
         });
         let (mut net, mut all) = (UnitQuaternion::identity(), 0.0);
         for step in steps {

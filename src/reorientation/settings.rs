@@ -16,7 +16,7 @@ use crate::input::{Document, InputError, optional_count};
 use crate::task::{Task, TaskTable};
 use crate::trajectory::Spline;
 
-/// The paper's task and the default settings.
+/// The default settings.
 pub(super) const DEFAULTS: &str = include_str!("defaults.toml");
 
 /// Most free coefficients per joint; beyond, powers of `t` no longer tell shapes apart.
@@ -128,8 +128,13 @@ impl TaskFile {
         Document::embedded("the paper's task", "")
     }
 
-    /// Reads a file; what it leaves out is the paper's.
+    /// Reads a file; what it leaves out of the task is that of its robot's own.
     pub fn read(document: &Document) -> Result<Self, InputError> {
+        if let (Some(place), None) = (document.key("joint")?, document.key("task")?) {
+            let message = "found the file of a robot, expected that of a task";
+            let help = "a task names its robot's file as `robot` in `[task]`".to_owned();
+            return Err(document.error_at(place, message, Some(help)));
+        }
         let Self { task, trajectory } = document.parse_over(&[DEFAULTS])?;
         let trajectory = trajectory.implied();
         trajectory.check_keys(document)?;
@@ -150,7 +155,10 @@ impl TaskFile {
     /// The same with the goal's tolerance, and the box and the accuracy of its problem, written out.
     #[must_use]
     pub fn resolved(self, problem: &TaskProblem) -> Self {
-        Self { task: self.task.resolved(), trajectory: self.trajectory.resolved(problem) }
+        Self {
+            task: self.task.resolved(problem.task()),
+            trajectory: self.trajectory.resolved(problem),
+        }
     }
 
     /// The task over sine polynomials, its search settings and its boxes; a file that names another family is an error.
@@ -327,7 +335,7 @@ impl TrajectoryTable {
             let message = format!("found {degree}, expected a degree of 3, 4 or 5");
             return Err(document.error_at(self.degree.span(), message, None));
         }
-        Ok(Spline::new(&task.start.joints, &task.goal.joints, pieces, degree))
+        Ok(task.splines(pieces, degree))
     }
 
     fn spline_box(

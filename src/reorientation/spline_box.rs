@@ -18,7 +18,9 @@ impl SplineBox {
     /// range and back on its way.
     pub fn around(family: &Spline, task: &Task) -> Self {
         let mut coefficients = vec![0.0; family.dimension()];
-        for (joint, [lower, upper]) in task.robot.joints().map(|j| j.range).enumerate() {
+        let ranges: Vec<[f64; 2]> = task.robot.joints().map(|joint| joint.range).collect();
+        for &joint in family.leading() {
+            let [lower, upper] = ranges[joint];
             let own = &mut coefficients[family.coefficients_of(joint)];
             let count = own.len();
             for (k, coefficient) in own.iter_mut().enumerate() {

@@ -4,6 +4,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use super::any::{AnyReorientation, SearchedFamily};
+use super::best_known::BestKnown;
 use super::fitness::{Assessment, Reorientation};
 use super::formulation::{Formulated, Formulation};
 use super::settings::TaskProblem;
@@ -21,9 +22,13 @@ pub(super) const SPACES: [&str; 3] =
 /// Costs of motions that differ by less than this share are the same: that is how far searches go.
 pub(super) const SAME_MOTION: f64 = 1e-6;
 
-/// Names of measures: the base's error, the duration.
+/// Targets where none are stated: by which shares they exceed the best known cost.
+const GAPS: [f64; 3] = [0.1, 0.01, 0.001];
+
+/// Names of measures: the base's error, the duration, the base's largest turn on the way.
 pub(super) const RESIDUAL: &str = "residual_deg";
 pub(super) const DURATION: &str = "t_f";
+pub(super) const LARGEST_TURN: &str = "largest_base_turn_deg";
 
 /// The task within a box of its family.
 #[derive(Debug)]
@@ -40,6 +45,14 @@ impl TaskSubject {
     /// The subject of an instance, where it is a task.
     pub fn of(instance: &Instance) -> Option<&Self> {
         instance.subject.as_any()?.downcast_ref()
+    }
+
+    /// An instance on it, with targets where its best cost is known.
+    pub fn into_instance(self, label: impl Into<String>) -> Instance {
+        let known = BestKnown::of(self.reorientation());
+        let targets = known.into_iter().flat_map(|known| GAPS.map(|gap| known.target(gap)));
+        let targets: Vec<f64> = targets.collect();
+        Instance::new(label, Arc::new(self)).with_targets(targets)
     }
 
     /// The task over its family.

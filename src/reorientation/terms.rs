@@ -23,7 +23,7 @@ impl Terms {
         Self { error: base_weight / k_q, duration: 1.0 - base_weight }
     }
 
-    /// `J` of a motion: `‖δq_b‖`, its duration \[s\] and its excess over limits and ranges.
+    /// `J` of a motion: `‖δq_b‖`, its duration \[s\] and its excess over limits, ranges and what else is limited.
     pub(super) fn cost(
         &self,
         error: f64,
@@ -32,6 +32,21 @@ impl Terms {
         range_excess: f64,
     ) -> f64 {
         self.error * error + self.duration * duration + penalty(excess, range_excess)
+    }
+
+    /// The penalty of the largest excess among pieces.
+    pub(super) fn excess(pieces: Vec<Piece>) -> Term {
+        Term::max(1.0 / K_EXCESS, pieces).at_least(0.0)
+    }
+
+    /// What the largest and the mean turn on the way \[rad\] add to the cost, where a degree of each adds so much.
+    pub(super) fn turns(weights: &[f64; 2], turns: &[f64; 2]) -> f64 {
+        weights.iter().zip(turns).map(|(weight, turn)| weight.to_degrees() * turn).sum()
+    }
+
+    /// What turns of the base on the way \[rad\] add to the cost, where a degree adds so much.
+    pub(super) fn turn(weight: f64, turns: Vec<Piece>) -> Term {
+        Term::max(weight.to_degrees(), turns).at_least(0.0)
     }
 
     /// What time, the error and the excess over the joints' ranges weigh.

@@ -6,9 +6,12 @@ use nalgebra::DVector;
 
 use super::fitness::Reorientation;
 use super::formulation::Formulated;
+use crate::robot::Follow;
 use crate::search::{
-    Bend, ErrorSlopes, Failure, LinearLimit, LinearLimits, Problem as _, Rng, Timed, TimedWeights,
+    Bend, Bent, ErrorSlopes, Failure, Fold, LinearLimit, LinearLimits, PieceId, Problem as _, Rng,
+    Timed, TimedWeights,
 };
+use crate::task::Task;
 use crate::trajectory::{Family, Site};
 
 /// Sines that a random start is made of.
@@ -32,6 +35,9 @@ impl<F: Family> Reorientation<F> {
         let (task, family, tables) = (self.task(), self.family(), self.tables());
         let mut limits = LinearLimits::default();
         family.sites(samples, &mut |site: &Site| {
+            if is_implied(task, site) {
+                return;
+            }
             let (middle, most) = match site.order {
                 0 => {
                     let [lower, upper] = tables.ranges[site.joint];
@@ -60,9 +66,27 @@ impl<F: Family> Reorientation<F> {
     }
 }
 
+impl<F: Family> Reorientation<F> {
+    /// What is asked for on the way.
+    fn bent(&self, coefficients: &[f64]) -> Bent {
+        let Some(sampled) = self.sampled(coefficients) else { return Bent::default() };
+        let asked = self.limits(&self.samples(coefficients)).time;
+        let pieces = sampled.pieces(self.width(), asked, 0);
+        Bent::new(pieces.durations().cloned().collect(), pieces.terms(), pieces.excess)
+    }
+}
+
+/// Whether a joint that follows another one keeps its limit where that one does; the ranges of both are always the same.
+fn is_implied(task: &Task, site: &Site) -> bool {
+    task.robot.follows()[site.joint].is_some_and(|Follow { leader, multiplier, .. }| {
+        let limit = |joint: usize| task.limits.0[joint][site.order - 1];
+        site.order == 0 || limit(site.joint) >= multiplier.abs() * limit(leader)
+    })
+}
+
 /// The first sines over each joint's variables, of unit length; they are orthogonal (the discrete sine transform).
 fn smooth_directions<F: Family>(family: &F) -> impl Iterator<Item = DVector<f64>> + '_ {
-    (0..family.joints()).flat_map(move |joint| {
+    family.leading().iter().flat_map(move |&joint| {
         let own = family.coefficients_of(joint);
         (1..=own.len().min(DIRECTIONS)).map(move |k| {
             let step = PI * k as f64 / (own.len() + 1) as f64;
@@ -85,6 +109,10 @@ impl<F: Family> Timed for Formulated<F> {
         Ok(self.task().error_slopes(x))
     }
 
+    fn bent(&self, x: &[f64]) -> Result<Bent, Failure> {
+        Ok(self.task().bent(x))
+    }
+
     /// Along the first sines of every joint's variables: rougher directions are held still by the limits.
     fn bends(&self, x: &[f64]) -> Result<Vec<Bend>, Failure> {
         let here = self.task().rough_error_slopes(x).slopes;
@@ -97,6 +125,11 @@ impl<F: Family> Timed for Formulated<F> {
         Ok(smooth_directions(self.task().family()).map(along).collect())
     }
 
+    fn folds(&self, x: &[f64], multipliers: &[(PieceId, f64)]) -> Result<Vec<Fold>, Failure> {
+        let sampled = self.task().sampled(x);
+        Ok(sampled.map(|s| s.folds(self.task().width(), multipliers)).unwrap_or_default())
+    }
+
     fn weights(&self) -> TimedWeights {
         self.task().terms().timed()
     }
@@ -107,7 +140,7 @@ impl<F: Family> Timed for Formulated<F> {
         let mut x: Vec<f64> = vec![0.0; family.dimension()];
         let [least, most] = AMPLITUDES;
         let typical = least * (most / least).powf(spread);
-        for joint in 0..family.joints() {
+        for &joint in family.leading() {
             let amplitudes: Vec<f64> =
                 (1..=SINES).map(|m| typical * rng.normal() / f64::from(m)).collect();
             let own = family.coefficients_of(joint);

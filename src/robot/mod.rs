@@ -1,14 +1,44 @@
 //! A free base and the tree of links that it carries.
 
+mod base;
+mod collision;
+mod derived;
+mod dh;
+mod error;
 mod file;
+mod follow;
+mod follow_table;
+mod followers;
+mod following;
+mod graph;
 mod identity;
+mod inertia;
 mod link;
+mod links;
+mod names;
+mod outfit;
 mod rigid;
+mod root;
+mod shape;
+mod shape_table;
+mod to_urdf;
 mod tree;
+mod urdf;
+mod urdf_shapes;
+mod xml;
 
+pub use base::BaseTable;
+pub use derived::ShapeSource;
+pub use error::RobotError;
 pub use file::RobotFile;
+pub use follow::Follow;
+pub use follow_table::{FollowTable, Follows};
 pub(crate) use link::Turns;
-pub use link::{Axis, Body, Joint, Link, Placement};
+pub use link::{Axis, Body, Joint, JointKind, Link, Placement};
+pub(crate) use outfit::find_joint;
+pub use outfit::{Locked, Outfit, PayloadTable};
 pub(crate) use rigid::Rigid;
+pub use shape::Shape;
+pub(crate) use shape_table::{ShapeTable, shapes as shapes_of};
 pub(crate) use tree::{Gathered, Inherited};
-pub use tree::{MovingJoint, Robot, RobotError, Tool};
+pub use tree::{MovingJoint, Robot, Tool};

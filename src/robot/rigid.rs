@@ -1,8 +1,8 @@
-//! Rigid transforms with matrices, of which no digit is lost.
+//! Rigid transforms with matrices, of which no digit is lost, and bodies that move as one.
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use super::link::Placement;
+use super::link::{Body, Placement};
 
 /// From a frame's coordinates to those of the frame it sits in.
 #[derive(Debug, Clone, Copy)]
@@ -34,4 +34,39 @@ impl Rigid {
         let rotation = self.rotation.inverse();
         Self { translation: rotation * -self.translation, rotation }
     }
+}
+
+/// A body in base axes.
+pub(super) struct Placed {
+    pub(super) mass: f64,
+    pub(super) centre: Vector3<f64>,
+    /// About the centre of mass.
+    pub(super) inertia: Matrix3<f64>,
+}
+
+impl Placed {
+    pub(super) fn base(body: &Body) -> Self {
+        Self { mass: body.mass, centre: Vector3::zeros(), inertia: body.inertia }
+    }
+
+    fn weighs_nothing(&self) -> bool {
+        self.mass == 0.0 && self.inertia == Matrix3::zeros()
+    }
+}
+
+/// Bodies that move as one. One alone keeps its digits.
+pub(super) fn merged(mut parts: Vec<Placed>) -> Placed {
+    parts.retain(|part| !part.weighs_nothing());
+    if parts.len() == 1 {
+        return parts.remove(0);
+    }
+    let mass: f64 = parts.iter().map(|part| part.mass).sum();
+    let moment: Vector3<f64> = parts.iter().map(|part| part.centre * part.mass).sum();
+    let centre = if mass > 0.0 { moment / mass } else { Vector3::zeros() };
+    let inertia = parts.iter().map(|part| {
+        let d = part.centre - centre;
+        let point = Matrix3::from_diagonal_element(d.norm_squared()) - d * d.transpose();
+        part.inertia + point * part.mass
+    });
+    Placed { mass, centre, inertia: inertia.sum() }
 }

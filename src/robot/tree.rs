@@ -1,6 +1,9 @@
 //! A free base and the tree of links that it carries.
 
-use super::link::{Body, Joint, Link, Placement, Turns};
+use super::error::RobotError;
+use super::follow::Follow;
+use super::link::{Axis, Body, Joint, JointKind, Link, Placement, Turns};
+use super::shape::Shape;
 
 /// A rigid base that floats freely, and the links that joints tie to it.
 ///
@@ -10,14 +13,21 @@ use super::link::{Body, Joint, Link, Placement, Turns};
 pub struct Robot {
     name: String,
     base: Body,
-    links: Vec<Link>,
+    pub(super) links: Vec<Link>,
     tool: Tool,
     joint_count: usize,
+    /// Of every joint how it follows another one.
+    pub(super) follows: Vec<Option<Follow>>,
+    mount: Placement,
     sources: Vec<Source>,
     /// How many links have a child that does not follow at once.
     kept: usize,
     is_plain: bool,
+    ignored: Vec<[Option<usize>; 2]>,
 }
+
+/// What a link is called that is the tool where nothing is said of it.
+pub(super) const TOOL: &str = "tool";
 
 /// The frame that tasks are done with.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,38 +43,30 @@ pub struct Tool {
 pub struct MovingJoint<'a> {
     /// Its name.
     pub name: &'a str,
+    /// What its positions are.
+    pub kind: JointKind,
     /// Smallest and largest position \[rad or m\] (eq. 29).
     pub range: [f64; 2],
+    /// Largest rate \[rad/s or m/s\], where the robot's maker states one.
+    pub rate: Option<f64>,
     /// Index of the link that it carries.
     pub link: usize,
+    /// How it follows another joint, if it does.
+    pub follows: Option<Follow>,
 }
 
-/// Why links make no robot.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum RobotError {
-    /// A parent that is not among the links before.
-    #[error("link {link} has the parent {parent}, which does not come before it")]
-    Parent {
-        /// Index of the link.
-        link: usize,
-        /// Index of its parent.
-        parent: usize,
-    },
-    /// A tool on a link that does not exist.
-    #[error("the tool is on link {0}, which does not exist")]
-    Tool(usize),
-    /// NaN, an infinite number, a negative mass, an inertia that is not symmetric or has a negative moment, or an empty
-    /// range.
-    #[error(
-        "link {0} has a number that is not finite, a negative mass, an inertia that no body has or an empty range"
-    )]
-    Link(usize),
-    /// A base without mass, or with NaN or an infinite number.
-    #[error("the base has a number that is not finite, no mass or an inertia that no body has")]
-    Base,
-    /// Nothing to move.
-    #[error("no joint moves")]
-    NoMovingJoint,
+impl MovingJoint<'_> {
+    /// A position that a file states in degrees or metres, in SI units; or why the joint cannot have it.
+    pub(crate) fn position(&self, stated: f64) -> Result<f64, String> {
+        let [lower, upper] = self.range.map(|end| self.kind.to_file_units(end));
+        // A hair's breadth for the rounding of degrees to radians and back.
+        if (lower - 1e-9..=upper + 1e-9).contains(&stated) {
+            return Ok(self.kind.from_file_units(stated));
+        }
+        let [stated, lower, upper] =
+            [stated, lower, upper].map(|position| self.kind.told(position));
+        Err(format!("{stated} is out of the range {lower} to {upper} of {}", self.name))
+    }
 }
 
 /// Where an outward sweep finds what a link inherits from its parent.
@@ -93,7 +95,7 @@ impl Robot {
         }
         for (i, link) in links.iter().enumerate() {
             if let Some(parent) = link.parent.filter(|parent| *parent >= i) {
-                return Err(RobotError::Parent { link: i, parent });
+                return Err(RobotError::Parent { link: link.name.clone(), parent });
             }
             let axis_is_sound = link.joint.axis().is_none_or(|axis| {
                 let [low, high] = axis.range;
@@ -108,7 +110,7 @@ impl Robot {
                 && link.body.is_sound()
                 && link.placement.is_finite())
             {
-                return Err(RobotError::Link(i));
+                return Err(RobotError::Link(link.name.clone()));
             }
         }
         if let Some(link) = tool.link.filter(|link| *link >= links.len()) {
@@ -118,9 +120,50 @@ impl Robot {
         if joint_count == 0 {
             return Err(RobotError::NoMovingJoint);
         }
+        let mount = mount(&links);
         let (sources, kept) = sources(&links);
         let is_plain = links.iter().enumerate().all(|(i, link)| is_plain(i, link));
-        Ok(Self { name, base, links, tool, joint_count, sources, kept, is_plain })
+        let ignored = Vec::new();
+        let follows = vec![None; joint_count];
+        Ok(Self {
+            name,
+            base,
+            links,
+            tool,
+            joint_count,
+            follows,
+            mount,
+            sources,
+            kept,
+            is_plain,
+            ignored,
+        })
+    }
+
+    /// The same with these [`ignored_pairs`](Self::ignored_pairs) instead of its own. Fails where there is no such link.
+    pub fn ignoring(mut self, pairs: Vec<[Option<usize>; 2]>) -> Result<Self, RobotError> {
+        let mut links = pairs.iter().flatten().flatten();
+        if let Some(link) = links.find(|link| **link >= self.links.len()) {
+            return Err(RobotError::Ignored(*link));
+        }
+        self.ignored = pairs;
+        Ok(self)
+    }
+
+    /// The same with the shapes of base and links, each in its own frame, and with these pairs beside its ignored ones.
+    pub(super) fn reshaped(
+        &self,
+        base: Vec<Shape>,
+        links: Vec<Vec<Shape>>,
+        ignored: Vec<[Option<usize>; 2]>,
+    ) -> Self {
+        let mut robot = self.clone();
+        robot.base.shapes = base;
+        for (link, shapes) in robot.links.iter_mut().zip(links) {
+            link.body.shapes = shapes;
+        }
+        robot.ignored.extend(ignored);
+        robot
     }
 
     /// The name given in its file.
@@ -143,6 +186,11 @@ impl Robot {
         &self.tool
     }
 
+    /// Links, `None` for the base, whose own shapes may touch each other. Links that are fixed to them are others.
+    pub fn ignored_pairs(&self) -> &[[Option<usize>; 2]] {
+        &self.ignored
+    }
+
     /// Number of joints that move.
     pub fn joint_count(&self) -> usize {
         self.joint_count
@@ -150,15 +198,37 @@ impl Robot {
 
     /// The joints that move, in the order of their positions and rates.
     pub fn joints(&self) -> impl Iterator<Item = MovingJoint<'_>> {
-        self.links.iter().enumerate().filter_map(|(link, Link { name, joint, .. })| {
-            joint.axis().map(|axis| MovingJoint { name, range: axis.range, link })
+        let moving =
+            self.links.iter().enumerate().filter_map(|(link, Link { joint, .. })| {
+                Some((link, joint.axis()?, joint.kind()?))
+            });
+        moving.zip(&self.follows).map(|((link, axis, kind), follows)| {
+            let Axis { name, range, rate, .. } = axis;
+            MovingJoint { name, kind, range: *range, rate: *rate, link, follows: *follows }
         })
     }
 
-    /// Where the first link that hangs on the base sits, in base axes.
+    /// The first joint that slides: degrees say nothing of it.
+    pub fn sliding_joint(&self) -> Option<MovingJoint<'_>> {
+        self.joints().find(|joint| joint.kind == JointKind::Prismatic)
+    }
+
+    /// The same with the tool where it is if nothing is said of it.
+    pub(super) fn holding_its_tool_outermost(mut self) -> Self {
+        self.tool = self.unstated_tool();
+        self
+    }
+
+    /// The tool where nothing is said of it: the link of that name, or the outermost link.
+    pub(super) fn unstated_tool(&self) -> Tool {
+        let named = self.links.iter().position(|link| link.name == TOOL);
+        let link = named.or_else(|| outermost(&self.links));
+        Tool { link, placement: Placement::identity() }
+    }
+
+    /// Where the first joint that moves sits, in base axes.
     pub fn mount(&self) -> &Placement {
-        // The first link has none before it to hang on.
-        &self.links[0].placement
+        &self.mount
     }
 
     /// Whether it is a chain of Denavit–Hartenberg rows with joints that turn, which sweeps go through with
@@ -185,23 +255,96 @@ impl Robot {
         self.base.mass + self.links.iter().map(|link| link.body.mass).sum::<f64>()
     }
 
-    /// What is unphysical about the data but can be computed with: inertias no solid body has.
+    /// For every link, whether it or a link that it carries has mass or inertia.
+    pub(super) fn moves_something(&self) -> Vec<bool> {
+        let own = |link: &Link| link.body.mass > 0.0 || link.body.inertia.norm() > 0.0;
+        let mut has: Vec<bool> = self.links.iter().map(own).collect();
+        for i in (0..has.len()).rev() {
+            if let Some(parent) = self.links[i].parent.filter(|_| has[i]) {
+                has[parent] = true;
+            }
+        }
+        has
+    }
+
+    /// The links that a joint moves and that have no mass, nor has what is fixed to them.
+    fn massless(&self) -> Vec<&str> {
+        // For every link the one that the nearest joint moves.
+        let mut movers: Vec<Option<usize>> = Vec::with_capacity(self.links.len());
+        let mut masses = vec![0.0; self.links.len()];
+        for (i, link) in self.links.iter().enumerate() {
+            let inner = link.parent.and_then(|parent| movers[parent]);
+            let mover = if link.joint.axis().is_some() { Some(i) } else { inner };
+            if let Some(mover) = mover {
+                masses[mover] += link.body.mass;
+            }
+            movers.push(mover);
+        }
+        let is_massless = |i: &usize| movers[*i] == Some(*i) && masses[*i] == 0.0;
+        let massless = (0..self.links.len()).filter(is_massless);
+        massless.map(|i| self.links[i].name.as_str()).collect()
+    }
+
+    /// What is unlikely about the data but can be computed with: links without mass, and inertias that no solid body has.
     pub fn warning(&self) -> Option<String> {
-        let links = self.links.iter().map(|l| (format!("the link of {}", l.name), &l.body));
+        let called = |link: &Link| match link.joint.axis() {
+            Some(axis) if axis.name == link.name => format!("the link of {}", link.name),
+            _ => link.name.clone(),
+        };
+        let links = self.links.iter().map(|link| (called(link), &link.body));
         let impossible: Vec<String> = std::iter::once(("the base".to_owned(), &self.base))
             .chain(links)
             .filter(|(_, body)| body.breaks_triangle_inequality())
             .map(|(name, _)| name)
             .collect();
-        (!impossible.is_empty()).then(|| {
-            format!(
-                "robot `{}`: the inertia of {} breaks the triangle inequality, so no solid body \
-                 has it; used as given",
-                self.name,
+        let mut warnings = Vec::new();
+        if !impossible.is_empty() {
+            warnings.push(format!(
+                "the inertia of {} breaks the triangle inequality, so no solid body has it; used as given",
                 impossible.join(" and of ")
-            )
-        })
+            ));
+        }
+        let massless = self.massless();
+        if !massless.is_empty() {
+            let verb = if massless.len() == 1 { "has" } else { "have" };
+            warnings.push(format!("{} {verb} no mass; used as given", massless.join(", ")));
+        }
+        (!warnings.is_empty()).then(|| format!("robot `{}`: {}", self.name, warnings.join(". ")))
     }
+}
+
+/// Where the first joint that moves sits on the base. All links before it are fixed.
+fn mount(links: &[Link]) -> Placement {
+    let Some(first) = links.iter().find(|link| link.joint.axis().is_some()) else {
+        return Placement::identity();
+    };
+    let mut placement = first.placement.clone();
+    let mut inner = first.parent;
+    while let Some(parent) = inner {
+        placement = links[parent].placement.then(&placement);
+        inner = links[parent].parent;
+    }
+    placement
+}
+
+/// The first of the links with most joints that move between them and the base, and from there outward as long as one link is fixed to
+/// the other and no second one.
+pub(super) fn outermost(links: &[Link]) -> Option<usize> {
+    let mut depths: Vec<usize> = Vec::with_capacity(links.len());
+    let mut carried: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
+    for (i, link) in links.iter().enumerate() {
+        let inner = link.parent.map_or(0, |parent| depths[parent]);
+        depths.push(inner + usize::from(link.joint.axis().is_some()));
+        if let Some(parent) = link.parent {
+            carried[parent].push(i);
+        }
+    }
+    let deepest = depths.iter().copied().max()?;
+    let mut outermost = depths.iter().position(|depth| *depth == deepest)?;
+    while let [only] = carried[outermost][..] {
+        outermost = only;
+    }
+    Some(outermost)
 }
 
 fn is_plain(index: usize, link: &Link) -> bool {

@@ -4,6 +4,9 @@ use rayon::prelude::*;
 
 use super::oracle::{Best, Oracle, Stop, TracePoint};
 
+/// A search on a relaxed problem may spend one in so many of the evaluations left.
+const RELAXED: u64 = 4;
+
 impl Oracle<'_> {
     /// Lets a search spend so many of the evaluations left, at most, and gives the best that it found.
     /// Where only these are spent, and not the whole budget, that is no reason to stop.
@@ -45,6 +48,32 @@ impl Oracle<'_> {
             self.add_to_search(prolong(own));
         }
         Ok(Some(outcome?.into_iter().map(prolong).collect()))
+    }
+
+    /// Whether the problem has a [relaxed](super::Problem::relaxed) one.
+    pub fn is_relaxable(&self) -> bool {
+        self.problem.relaxed().is_some()
+    }
+
+    /// Has a search work on the relaxed problem, with a share of the budget; nothing where there is none. Its evaluations count
+    /// here, but what it ends with are starts and no points that were found.
+    pub fn on_relaxed(
+        &mut self,
+        search: impl FnOnce(&mut Self) -> Result<Vec<Best>, Stop>,
+    ) -> Result<Vec<Vec<f64>>, Stop> {
+        let Some(relaxed) = self.problem.relaxed() else { return Ok(Vec::new()) };
+        let mut own = Self {
+            started: self.started,
+            is_parallel: self.is_parallel,
+            ..Self::new(relaxed, self.remaining() / RELAXED, self.watch)
+        };
+        let outcome = search(&mut own);
+        self.count(&own);
+        let ends = match outcome {
+            Err(Stop::BudgetSpent) => own.best.into_iter().collect(),
+            outcome => outcome?,
+        };
+        Ok(ends.into_iter().map(|end| end.x).collect())
     }
 
     /// Searches from several points, each of which may spend what is left, and gives the best that each found. Once
@@ -94,12 +123,7 @@ impl Oracle<'_> {
     /// Takes what another oracle has spent and found as spent and found after its own; gives the best of its search.
     fn join(&mut self, other: Self) -> Option<Best> {
         let before = self.evaluations;
-        self.evaluations += other.evaluations;
-        self.linearisations += other.linearisations;
-        self.curvatures += other.curvatures;
-        self.conic_solves += other.conic_solves;
-        self.conic_failures += other.conic_failures;
-        self.in_problem += other.in_problem;
+        self.count(&other);
         self.first_feasible = self.first_feasible.or(other.first_feasible.map(|at| before + at));
         let is_better = |cost: f64| Best::is_above(self.best.as_ref(), cost);
         let better = other.trace.into_iter().filter(|point| is_better(point.best.cost));
@@ -113,6 +137,16 @@ impl Oracle<'_> {
             self.add_to_search(own);
         }
         other.best_within
+    }
+
+    /// Takes what another oracle has spent as spent.
+    fn count(&mut self, other: &Self) {
+        self.evaluations += other.evaluations;
+        self.linearisations += other.linearisations;
+        self.curvatures += other.curvatures;
+        self.conic_solves += other.conic_solves;
+        self.conic_failures += other.conic_failures;
+        self.in_problem += other.in_problem;
     }
 
     fn add_to_search(&mut self, found: Best) {

@@ -128,5 +128,7 @@ pub use problem::{Coarse, Composite, Differentiable, Problem, Slopes, Timed};
 pub use rng::Rng;
 pub use subgradient::Subgradient;
 pub use terms::{Linearisation, Multipliers, Piece, PieceId, Shape, Term};
-pub use timed::{Bend, ErrorSlopes, LinearLimit, LinearLimits, TimedWeights};
+pub use timed::{
+    Bend, Bent, ErrorSlopes, Fold, LinearLimit, LinearLimits, TimedParts, TimedWeights,
+};
 pub use watch::Watch;

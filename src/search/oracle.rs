@@ -10,8 +10,9 @@ use super::points::{Bounds, Points};
 use super::problem::{Coarse, Composite, Problem, Timed};
 use super::rng::Rng;
 use super::subgradient::Subgradient;
+use super::terms::PieceId;
 use super::terms::{Linearisation, Multipliers, Shape};
-use super::timed::{Bend, ErrorSlopes, LinearLimits, TimedWeights};
+use super::timed::{Bend, Fold, LinearLimits, TimedParts, TimedWeights};
 use super::watch::Watch;
 
 /// Why an optimiser has to stop.
@@ -301,18 +302,18 @@ impl<'a> Oracle<'a> {
 
     /// Evaluates one point of a [`Timed`](super::Timed) problem together with all that its cost follows from: one
     /// evaluation and one linearisation. Slopes of another shape than error and point ask for are a failure.
-    pub fn timing(&mut self, x: &[f64]) -> Result<(LinearLimits, ErrorSlopes), Stop> {
+    pub fn timing(&mut self, x: &[f64]) -> Result<TimedParts, Stop> {
         self.check()?;
         self.check_dimension(x.len())?;
         let problem = self.problem.timed().ok_or(Stop::NoDerivatives)?;
         self.begin();
         self.linearisations += 1;
-        let (limits, error) =
-            self.clocked(|| Ok::<_, Failure>((problem.limits(x)?, problem.error(x)?)))?;
-        limits.check(x.len())?;
-        error.check(x.len())?;
-        self.record(x, problem.weights().evaluation(&limits, &error));
-        Ok((limits, error))
+        let parts = self.clocked(|| problem.parts(x))?;
+        parts.limits.check(x.len())?;
+        parts.error.check(x.len())?;
+        parts.bent.check(x.len())?;
+        self.record(x, problem.weights().evaluation(&parts));
+        Ok(parts)
     }
 
     /// The limits of a [`Timed`](super::Timed) problem at a point, which is part of the model of its cost and no evaluation.
@@ -334,6 +335,19 @@ impl<'a> Oracle<'a> {
         let bends = self.clocked(|| problem.bends(x))?;
         bends.iter().try_for_each(|bend| bend.check(components, x.len()))?;
         Ok(bends)
+    }
+
+    /// How else a [`Timed`](super::Timed) cost bends at a point, to go with [`bends`](Self::bends).
+    pub fn folds(&mut self, x: &[f64], multipliers: &[(PieceId, f64)]) -> Result<Vec<Fold>, Stop> {
+        self.check_dimension(x.len())?;
+        let problem = self.problem.timed().ok_or(Stop::NoDerivatives)?;
+        let folds = self.clocked(|| problem.folds(x, multipliers))?;
+        if let Some(fold) = folds.iter().find(|fold| fold.direction.len() != x.len()) {
+            let (found, expected) = (fold.direction.len(), x.len());
+            let message = format!("found a direction of {found} components, expected {expected}");
+            return Err(Failure::new(message).into());
+        }
+        Ok(folds)
     }
 
     /// What parts of a [`Timed`](super::Timed) cost weigh, where the problem has one.

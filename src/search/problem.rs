@@ -7,8 +7,8 @@ use super::failure::Failure;
 use super::points::{Bounds, Points};
 use super::rng::Rng;
 use super::subgradient::Subgradient;
-use super::terms::{Linearisation, Multipliers};
-use super::timed::{Bend, ErrorSlopes, LinearLimits, TimedWeights};
+use super::terms::{Linearisation, Multipliers, PieceId};
+use super::timed::{Bend, Bent, ErrorSlopes, Fold, LinearLimits, TimedParts, TimedWeights};
 use super::watch::Watch;
 
 /// A box-bounded minimisation problem.
@@ -59,6 +59,12 @@ pub trait Problem: Send + Sync {
         None
     }
 
+    /// The same problem in the same variables without some of its limits, where minima are sooner found there and are good
+    /// starts; always or never.
+    fn relaxed(&self) -> Option<&dyn Problem> {
+        None
+    }
+
     /// Where subgradients of the cost come from, where the problem has them; always or never. Those of a composite or a
     /// timed cost follow from its parts.
     fn slopes(&self) -> Option<Slopes<'_>> {
@@ -92,9 +98,7 @@ impl Slopes<'_> {
     pub fn at(self, x: &[f64]) -> Result<Subgradient, Failure> {
         match self {
             Self::Composite(problem) => Ok(problem.linearise(x)?.subgradient(x.len())),
-            Self::Timed(problem) => {
-                Ok(problem.weights().subgradient(&problem.limits(x)?, &problem.error(x)?))
-            }
+            Self::Timed(problem) => Ok(problem.weights().subgradient(&problem.parts(x)?)),
             Self::Own(problem) => problem.subgradient(x),
         }
     }
@@ -127,19 +131,38 @@ pub trait Composite: Problem {
 /// ```
 ///
 /// There may be infinitely many `ℓ_i`, such as the values of a polynomial at all places of an interval. Time and excess
-/// are those of all of them.
+/// are those of all of them. Smooth functions of any variables may bound the time, too, and maxima of such functions may be added
+/// to the cost.
 pub trait Timed: Problem {
     /// Time and excess of a point, and the `ℓ_i` that they may follow from there.
     fn limits(&self, x: &[f64]) -> Result<LinearLimits, Failure>;
 
-    /// The error at a point. With [`limits`](Self::limits) its cost is that of [`evaluate`](Problem::evaluate), to
-    /// rounding.
+    /// The error at a point. With [`limits`](Self::limits) and [`bent`](Self::bent) its cost is that of
+    /// [`evaluate`](Problem::evaluate), to rounding.
     fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure>;
+
+    /// All else that the cost follows from; nothing by default.
+    fn bent(&self, x: &[f64]) -> Result<Bent, Failure> {
+        let _ = x;
+        Ok(Bent::default())
+    }
+
+    /// All parts of the cost.
+    fn parts(&self, x: &[f64]) -> Result<TimedParts, Failure> {
+        Ok(TimedParts { limits: self.limits(x)?, error: self.error(x)?, bent: self.bent(x)? })
+    }
 
     /// How the error's slopes change along a few directions, those in which steps go far; elsewhere
     /// the search takes the error for linear.
     /// The directions are orthonormal.
     fn bends(&self, x: &[f64]) -> Result<Vec<Bend>, Failure>;
+
+    /// Positive parts of the second derivative of the sum of some pieces of [`bent`](Self::bent), each times its multiplier;
+    /// none by default.
+    fn folds(&self, x: &[f64], multipliers: &[(PieceId, f64)]) -> Result<Vec<Fold>, Failure> {
+        let _ = (x, multipliers);
+        Ok(Vec::new())
+    }
 
     /// The same at every point.
     fn weights(&self) -> TimedWeights;

@@ -152,6 +152,15 @@ impl Term {
         }
     }
 
+    /// Adds a subgradient of `w φ(v)`.
+    pub(super) fn add_slopes(&self, slopes: &mut DVector<f64>) {
+        for (piece, weight) in self.pieces.iter().zip(self.weights()) {
+            if weight != 0.0 {
+                slopes.axpy(weight, &piece.gradient, 1.0);
+            }
+        }
+    }
+
     /// By how much each piece changes over a step, to first order.
     pub fn changes(&self, step: &DVector<f64>) -> Vec<f64> {
         // Of the two orders in which the products can be summed the first is that of a matrix times a vector.
@@ -204,13 +213,7 @@ impl Linearisation {
     /// Cost and violation, and a subgradient of the cost in so many variables.
     pub fn subgradient(&self, variables: usize) -> Subgradient {
         let mut slopes = DVector::zeros(variables);
-        for term in &self.terms {
-            for (piece, weight) in term.pieces.iter().zip(term.weights()) {
-                if weight != 0.0 {
-                    slopes.axpy(weight, &piece.gradient, 1.0);
-                }
-            }
-        }
+        self.terms.iter().for_each(|term| term.add_slopes(&mut slopes));
         Subgradient { evaluation: self.evaluation(), slopes }
     }
 

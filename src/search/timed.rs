@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::evaluation::Evaluation;
 use super::failure::Failure;
 use super::subgradient::Subgradient;
+use super::terms::{Piece, Shape, Term};
 
 /// Weights of time, error and excess; finite and not negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,29 @@ pub struct ErrorSlopes {
     pub slopes: DMatrix<f64>,
 }
 
+/// What a timed cost follows from beside linear limits and the error: smooth functions of any variables.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct Bent {
+    /// Functions that the time is never below. Those that are far below it may be left out.
+    pub durations: Vec<Piece>,
+    /// Maxima that are added to the cost; as many at every point, in the same order, with the same weights.
+    pub terms: Vec<Term>,
+    /// By how much the point breaks the limits among them, as in [`Evaluation`].
+    pub violation: f64,
+}
+
+/// All parts of a timed cost at a point.
+#[derive(Debug, Clone)]
+pub struct TimedParts {
+    /// Time and excess that linear limits leave.
+    pub limits: LinearLimits,
+    /// The error.
+    pub error: ErrorSlopes,
+    /// All else.
+    pub bent: Bent,
+}
+
 /// The error's second derivative in one direction.
 #[derive(Debug, Clone)]
 pub struct Bend {
@@ -33,6 +57,15 @@ pub struct Bend {
     pub direction: DVector<f64>,
     /// The change of [`ErrorSlopes::slopes`] per unit of length along it.
     pub change: DMatrix<f64>,
+}
+
+/// A positive part `c q qᵀ` of a second derivative.
+#[derive(Debug, Clone)]
+pub struct Fold {
+    /// `q`.
+    pub direction: DVector<f64>,
+    /// `c`, above zero.
+    pub curvature: f64,
 }
 
 /// What limits of a point's time and excess are known.
@@ -99,31 +132,73 @@ impl LinearLimit {
 
 impl TimedWeights {
     /// `J`.
-    pub fn cost(&self, limits: &LinearLimits, error: &ErrorSlopes) -> f64 {
-        self.time * limits.time + self.error * error.value.norm() + self.excess * limits.excess
+    pub fn cost(&self, parts: &TimedParts) -> f64 {
+        let TimedParts { limits, error, bent } = parts;
+        let rest: f64 = bent.terms.iter().map(Term::cost).sum();
+        self.time * parts.time()
+            + self.error * error.value.norm()
+            + self.excess * limits.excess
+            + rest
     }
 
     /// Cost and violation.
-    pub fn evaluation(&self, limits: &LinearLimits, error: &ErrorSlopes) -> Evaluation {
-        Evaluation::new(self.cost(limits, error), limits.excess)
+    pub fn evaluation(&self, parts: &TimedParts) -> Evaluation {
+        Evaluation::new(self.cost(parts), parts.limits.excess + parts.bent.violation)
     }
 
     /// Cost and violation, and a subgradient of the cost.
-    pub fn subgradient(&self, limits: &LinearLimits, error: &ErrorSlopes) -> Subgradient {
+    pub fn subgradient(&self, parts: &TimedParts) -> Subgradient {
+        let TimedParts { limits, error, bent } = parts;
         let mut slopes = DVector::zeros(error.slopes.ncols());
         let norm = error.value.norm();
         if norm > 0.0 {
             slopes.gemv_tr(self.error / norm, &error.slopes, &error.value, 0.0);
         }
-        if let Some(limit) = limits.longest() {
-            limit.add_slopes(self.time, &mut slopes);
+        match bent.longest().filter(|piece| piece.value > limits.time) {
+            Some(piece) => slopes.axpy(self.time, &piece.gradient, 1.0),
+            None => {
+                if let Some(limit) = limits.longest() {
+                    limit.add_slopes(self.time, &mut slopes);
+                }
+            }
         }
+        bent.terms.iter().for_each(|term| term.add_slopes(&mut slopes));
         if limits.excess > 0.0
             && let Some(limit) = limits.farthest()
         {
             limit.add_slopes(self.excess, &mut slopes);
         }
-        Subgradient { evaluation: self.evaluation(limits, error), slopes }
+        Subgradient { evaluation: self.evaluation(parts), slopes }
+    }
+}
+
+impl TimedParts {
+    /// `T`, by linear limits and all else.
+    pub fn time(&self) -> f64 {
+        self.bent.longest().map_or(self.limits.time, |piece| piece.value.max(self.limits.time))
+    }
+}
+
+impl Bent {
+    /// The durations and the maxima.
+    pub fn new(durations: Vec<Piece>, terms: Vec<Term>, violation: f64) -> Self {
+        Self { durations, terms, violation }
+    }
+
+    fn longest(&self) -> Option<&Piece> {
+        self.durations.iter().max_by(|a, b| a.value.total_cmp(&b.value))
+    }
+
+    /// Whether all terms are maxima and all slopes of so many variables.
+    pub(super) fn check(&self, variables: usize) -> Result<(), Failure> {
+        if self.terms.iter().any(|term| term.shape != Shape::Max) {
+            return Err(Failure::new("found a term of another shape than a maximum"));
+        }
+        let pieces = self.terms.iter().flat_map(|term| &term.pieces).chain(&self.durations);
+        let found = pieces.map(|piece| piece.gradient.len()).find(|&found| found != variables);
+        found.map_or(Ok(()), |found| {
+            Err(format!("found a gradient of {found} components, expected {variables}").into())
+        })
     }
 }
 

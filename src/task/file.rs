@@ -1,16 +1,22 @@
 //! The `[task]` table.
 
-use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::{PoseTable, Posture, PostureParts, Task};
-use crate::input::{Document, Finite, Fraction, InputError, PerJoint, Positive, nearest};
-use crate::robot::Robot;
+use super::joints::JointValues;
+use super::keep_out::KeepOut;
+use super::path_limits::{ClearanceLimit, Impossible};
+use super::reader::Reader;
+use super::tables::{
+    LIMIT_KEYS, LimitsTable, PostureTable, StatedTable, WeightsTable, placed, unplaced,
+};
+use super::way::Way;
+use super::{PoseTable, Task};
+use crate::input::{Document, Fraction, InputError, NonNegative, Positive, nearest};
+use crate::robot::{BaseTable, Follows, Locked, Outfit, PayloadTable, Robot, RobotFile};
 use crate::trajectory::Limits;
 
 /// The key of the base's weight.
@@ -19,50 +25,81 @@ const WEIGHT: &str = "weights.base";
 /// How far from its goal the base may end where a file says nothing of it.
 const TOLERANCE_DEG: f64 = 0.001;
 
-/// The robot of the paper's task, whose values a file need not state.
+/// The robot of a task that names none.
 const PAPERS_ROBOT: &str = "xiao2023";
 
-/// The `[task]` table.
+/// The `[task]` table. What a file leaves out is that of the task that its robot comes with, if it comes with the program.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
+#[serde(from = "StatedTable")]
 pub struct TaskTable {
     robot: Spanned<String>,
+    #[serde(skip_serializing_if = "Locked::is_empty")]
+    locked: Locked,
+    #[serde(skip_serializing_if = "Follows::is_empty")]
+    follow: Follows,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    base: Option<Spanned<BaseTable>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    payload: Option<Spanned<PayloadTable>>,
     start: PostureTable,
     goal: PostureTable,
     limits: LimitsTable,
     weights: WeightsTable,
+    #[serde(skip_serializing_if = "KeepOut::is_empty")]
+    keep_out: KeepOut,
     /// Limits on rate, acceleration and jerk that a sweep states.
     #[serde(skip)]
     swept: [bool; 3],
 }
-
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-struct PostureTable {
-    joints_deg: Spanned<Vec<Finite>>,
-    base_zyx_deg: Spanned<[Finite; 3]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    tolerance_deg: Option<Spanned<Positive>>,
-    /// Whether a pose states the joints' angles, and the base's attitude.
-    #[serde(skip)]
-    posed: [bool; 2],
+impl From<StatedTable> for TaskTable {
+    fn from(stated: StatedTable) -> Self {
+        let StatedTable {
+            robot,
+            locked,
+            follow,
+            base,
+            payload,
+            start,
+            goal,
+            limits,
+            weights,
+            keep_out,
+        } = stated;
+        let robot = robot.unwrap_or_else(|| Spanned::new(0..0, PAPERS_ROBOT.to_owned()));
+        let swept = [false; 3];
+        Self { robot, locked, follow, base, payload, start, goal, limits, weights, keep_out, swept }
+            .filled()
+    }
 }
-
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-struct LimitsTable {
-    rate_deg_s: Spanned<PerJoint>,
-    acceleration_deg_s2: Spanned<PerJoint>,
-    jerk_deg_s3: Spanned<PerJoint>,
-}
-
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-struct WeightsTable {
-    base: Spanned<Fraction>,
-}
-
 impl TaskTable {
+    /// The same with what the robot's own task has where this states nothing.
+    fn filled(mut self) -> Self {
+        let robot = self.robot.get_ref();
+        let default = StatedTable::of(robot).freed(robot, &self.locked, &self.follow);
+        self.start.filled(&default.start);
+        self.goal.filled(&default.goal);
+        self.limits = self.limits.filled(&default.limits);
+        let weight = || Some(Spanned::new(0..0, Fraction(super::BASE_WEIGHT)));
+        self.weights.base =
+            self.weights.base.or_else(|| unplaced(default.weights.base.as_ref())).or_else(weight);
+        self
+    }
+
+    /// The same with what its file states alone.
+    #[must_use]
+    pub fn stated(&self) -> Self {
+        Self {
+            start: self.start.stated(),
+            goal: self.goal.stated(),
+            limits: self.limits.stated(),
+            weights: WeightsTable {
+                base: placed(self.weights.base.as_ref()),
+                ..self.weights.clone()
+            },
+            ..self.clone()
+        }
+    }
+
     /// The robot's file, unless it comes with the program.
     pub fn robot_file(&self, document: &Document) -> Option<PathBuf> {
         let name = self.robot.get_ref();
@@ -79,23 +116,57 @@ impl TaskTable {
         }
     }
 
-    /// The same with the goal's tolerance written out.
+    /// The same with the goal's tolerance, rates that are the robot's own and what limits on the way imply written out.
     #[must_use]
-    pub fn resolved(mut self) -> Self {
+    pub fn resolved(mut self, task: &Task) -> Self {
         let default = || Spanned::new(0..0, Positive(TOLERANCE_DEG));
         self.goal.tolerance_deg.get_or_insert_with(default);
+        if task.path.base_turn.is_some() || task.path.turn_weights != [0.0; 2] {
+            self.limits.base_turn_from.get_or_insert_default();
+        }
+        if let Some(clearance) = &task.path.clearance {
+            let least = || Spanned::new(0..0, NonNegative(clearance.least));
+            self.limits.clearance_m.get_or_insert_with(least);
+        }
+        if self.limits.missing()[0] {
+            let joints = || task.robot.joints().zip(&task.limits.0);
+            let rates =
+                joints().map(|(joint, limits)| Positive(joint.kind.to_file_units(limits[0])));
+            let rates = Some(Spanned::new(0..0, JointValues::Each(rates.collect())));
+            if task.robot.sliding_joint().is_none() {
+                self.limits.rate_deg_s = rates;
+            } else {
+                self.limits.rate = rates;
+            }
+        }
         self
     }
 
     /// The robot, read from its file unless it comes with the program.
     pub fn robot(&self, document: &Document) -> Result<Robot, InputError> {
-        find_robot(&self.robot, document)
+        let (file, text) = find_robot(&self.robot, document)?;
+        file.build_for(
+            &text,
+            &Outfit {
+                document,
+                base: self.base.as_ref(),
+                locked: &self.locked,
+                follow: &self.follow,
+                payload: self.payload.as_ref(),
+            },
+        )
     }
 
-    /// The same task with another robot.
+    /// The same task with another robot, and what that one's own task has where the file states nothing.
     #[must_use]
     pub fn with_robot(self, robot: Spanned<String>) -> Self {
-        Self { robot, ..self }
+        Self { robot, ..self.stated() }.filled()
+    }
+
+    /// The same task with its robot in another file.
+    #[must_use]
+    pub fn with_robot_file(self, robot: String) -> Self {
+        Self { robot: Spanned::new(0..0, robot), ..self }
     }
 
     /// The same task where a sweep states these limits on rate, acceleration and jerk.
@@ -104,88 +175,134 @@ impl TaskTable {
         Self { swept, ..self }
     }
 
-    /// The keys that the file leaves to the paper's task.
+    /// The keys that the file leaves to the task that its robot comes with.
     pub fn inherited(&self) -> Vec<&'static str> {
-        let is_stated = |span: Range<usize>, elsewhere: bool| !span.is_empty() || elsewhere;
-        let Self { start, goal, limits, weights, swept, .. } = self;
+        let [start, goal] = [&self.start, &self.goal].map(PostureTable::own);
+        let limits = self.limits.own();
+        let swept = self.swept;
+        let by_joint = self.limits.acceleration.is_some() || self.limits.jerk.is_some();
+        let rate = if by_joint { "limits.rate" } else { "limits.rate_deg_s" };
+        let is_weight_own = self.weights.base.as_ref().is_some_and(|base| !base.span().is_empty());
         let keys = [
-            ("start.joints_deg", is_stated(start.joints_deg.span(), start.posed[0])),
-            ("start.base_zyx_deg", is_stated(start.base_zyx_deg.span(), start.posed[1])),
-            ("goal.joints_deg", is_stated(goal.joints_deg.span(), goal.posed[0])),
-            ("goal.base_zyx_deg", is_stated(goal.base_zyx_deg.span(), goal.posed[1])),
-            ("limits.rate_deg_s", is_stated(limits.rate_deg_s.span(), swept[0])),
-            ("limits.acceleration_deg_s2", is_stated(limits.acceleration_deg_s2.span(), swept[1])),
-            ("limits.jerk_deg_s3", is_stated(limits.jerk_deg_s3.span(), swept[2])),
-            (WEIGHT, is_stated(weights.base.span(), false)),
+            ("start.joints_deg", start[0]),
+            ("start.base_zyx_deg", start[1]),
+            ("goal.joints_deg", goal[0]),
+            ("goal.base_zyx_deg", goal[1]),
+            (rate, limits[0] || swept[0]),
+            ("limits.acceleration_deg_s2", limits[1] || swept[1]),
+            ("limits.jerk_deg_s3", limits[2] || swept[2]),
+            (WEIGHT, is_weight_own),
         ];
-        keys.into_iter().filter(|(_, is_stated)| !is_stated).map(|(key, _)| key).collect()
+        keys.into_iter().filter(|(_, is_own)| !is_own).map(|(key, _)| key).collect()
     }
 
-    /// Whether nothing is left to the paper's task that is for another robot. A weight is for all.
-    fn check_stated(&self, document: &Document) -> Result<(), InputError> {
-        let mut missing = self.inherited();
-        missing.retain(|key| *key != WEIGHT);
-        if missing.is_empty() || self.robot.get_ref() == PAPERS_ROBOT {
+    /// What the file leaves out and where it is taken from, in words, if it leaves out anything.
+    pub fn inheritance(&self) -> Option<String> {
+        let (robot, keys) = (self.robot.get_ref(), self.inherited());
+        if keys.is_empty() {
+            return None;
+        }
+        let source = |key: &str| match key {
+            _ if robot == PAPERS_ROBOT => "as in the paper's task",
+            WEIGHT => "by default",
+            _ if Robot::embedded(robot).is_some() => "as in the robot's own task",
+            _ => "as in the robot's file",
+        };
+        let told = keys.chunk_by(|a, b| source(a) == source(b));
+        let told = told.map(|keys| format!("{} ({})", keys.join(", "), source(keys[0])));
+        Some(told.collect::<Vec<_>>().join(", "))
+    }
+
+    /// Whether nothing is missing. Rates may be the robot's own.
+    fn check_stated(&self, robot: &Robot, document: &Document) -> Result<(), InputError> {
+        let slides = robot.sliding_joint().is_some();
+        let key = |in_degrees: &str, by_joint: &str| {
+            format!("`{}`", if slides { by_joint } else { in_degrees })
+        };
+        let mut missing = Vec::new();
+        for (name, posture) in [("start", &self.start), ("goal", &self.goal)] {
+            if posture.is_without_joints() {
+                missing.push(key(&format!("{name}.joints_deg"), &format!("{name}.joints")));
+            }
+            if posture.base_zyx_deg.is_none() {
+                missing.push(format!("`{name}.base_zyx_deg`"));
+            }
+        }
+        let has_rates = robot.joints().all(|joint| joint.rate.is_some() || joint.follows.is_some());
+        for (order, is_missing) in self.limits.missing().into_iter().enumerate() {
+            if is_missing && !self.swept[order] && !(order == 0 && has_rates) {
+                let [in_degrees, by_joint] = LIMIT_KEYS[order].map(|key| format!("limits.{key}"));
+                missing.push(key(&in_degrees, &by_joint));
+            }
+        }
+        if missing.is_empty() {
             return Ok(());
         }
-        let keys: Vec<String> = missing.iter().map(|key| format!("`{key}`")).collect();
         let message = format!(
             "the task does not state {}, which this robot has no defaults for",
-            keys.join(", ")
+            missing.join(", ")
         );
-        let help = "the defaults are those of the paper's task and robot".to_owned();
+        let joints: Vec<&str> = robot.joints().map(|joint| joint.name).collect();
+        let help = format!(
+            "only robots that come with the program come with a task; its joints are {}",
+            joints.join(", ")
+        );
         Err(document.error_at(self.robot.span(), message, Some(help)))
     }
 
     /// The task. A robot that does not come with the program is a file, sought beside `document`.
     pub fn build(&self, document: &Document) -> Result<Task, InputError> {
         let robot = self.robot(document)?;
-        self.check_stated(document)?;
+        self.check_stated(&robot, document)?;
         let reader = Reader { document, robot: &robot };
-        let [rate, acceleration, jerk] = [
-            reader.limit(&self.limits.rate_deg_s)?,
-            reader.limit(&self.limits.acceleration_deg_s2)?,
-            reader.limit(&self.limits.jerk_deg_s3)?,
-        ];
+        let mut limits = vec![[0.0; 3]; robot.joint_count()];
+        for (order, pair) in self.limits.pairs().into_iter().enumerate() {
+            let values = reader.limit(pair, order)?;
+            limits.iter_mut().zip(values).for_each(|(limits, value)| limits[order] = value);
+        }
         if let Some(tolerance) = &self.start.tolerance_deg {
             let message = "found `tolerance_deg`, which is for the goal alone";
             return Err(document.error_at(tolerance.span(), message, None));
         }
         let tolerance = self.goal.tolerance_deg.as_ref().map_or(TOLERANCE_DEG, |t| t.get_ref().0);
-        let limits = (0..robot.joint_count()).map(|i| [rate[i], acceleration[i], jerk[i]]);
-        Ok(Task {
+        let weight = self.weights.base.as_ref().map_or(super::BASE_WEIGHT, |base| base.get_ref().0);
+        let way = Way { limits: &self.limits, weights: &self.weights, robot: &robot, document };
+        let mut task = Task {
             start: reader.posture(&self.start)?,
             goal: reader.posture(&self.goal)?,
-            limits: Limits(limits.collect()),
-            base_weight: self.weights.base.get_ref().0,
+            limits: Limits(limits),
+            base_weight: weight,
             goal_tolerance: tolerance.to_radians(),
+            path: way.build()?,
             robot: Arc::new(robot),
-        })
-    }
-}
-
-impl PostureTable {
-    /// The same posture but for some parts.
-    fn with(&self, parts: &PostureParts) -> Self {
-        let Self { joints_deg, base_zyx_deg, tolerance_deg, posed } = self;
-        let base = parts.base_zyx_deg.map(|base| Spanned::new(0..0, base));
-        Self {
-            joints_deg: parts.joints_deg.as_ref().unwrap_or(joints_deg).clone(),
-            posed: [posed[0] || parts.joints_deg.is_some(), posed[1] || base.is_some()],
-            base_zyx_deg: base.unwrap_or_else(|| base_zyx_deg.clone()),
-            tolerance_deg: tolerance_deg.clone(),
+        };
+        let solids = self.keep_out.solids(&task.robot, &task.start);
+        let least = self.limits.clearance_m.as_ref().map(|clearance| clearance.get_ref().0);
+        // What is to be kept out of is not to be touched.
+        if let Some(least) = least.or((!solids.is_empty()).then_some(0.0)) {
+            task.path.clearance = Some(ClearanceLimit::new(&task.robot, solids, least));
+        }
+        match task.impossible() {
+            None => Ok(task),
+            Some(Impossible { key, reason }) => {
+                Err(document.error_at(self.limits.span_of(key), reason, None))
+            }
         }
     }
 }
-
-fn find_robot(name: &Spanned<String>, document: &Document) -> Result<Robot, InputError> {
+/// The robot's file, and its text.
+fn find_robot(
+    name: &Spanned<String>,
+    document: &Document,
+) -> Result<(RobotFile, Document), InputError> {
     let known = name.get_ref();
     if let Some(embedded) = Robot::embedded(known) {
-        return Robot::from_document(&embedded);
+        return Ok((RobotFile::read(&embedded)?, embedded));
     }
     let path = document.resolve(known);
-    if path.exists() {
-        return Robot::from_document(&Document::read(&path)?);
+    if path.is_file() {
+        let text = Document::read(&path)?;
+        return Ok((RobotFile::read(&text)?, text));
     }
     let message = format!(
         "no robot `{known}`: neither one that comes with the program nor a file at {}",
@@ -193,52 +310,4 @@ fn find_robot(name: &Spanned<String>, document: &Document) -> Result<Robot, Inpu
     );
     let help = nearest(known, Robot::embedded_names()).map(|n| format!("did you mean `{n}`?"));
     Err(document.error_at(name.span(), message, help))
-}
-
-/// Reads what is listed joint by joint, in degrees, into radians.
-struct Reader<'a> {
-    document: &'a Document,
-    robot: &'a Robot,
-}
-
-impl Reader<'_> {
-    fn posture(&self, table: &PostureTable) -> Result<Posture, InputError> {
-        let angles = table.joints_deg.get_ref();
-        self.check_length(&table.joints_deg, angles.len())?;
-        for (joint, Finite(angle)) in self.robot.joints().zip(angles) {
-            let [lower, upper] = joint.range.map(f64::to_degrees);
-            // A hair's breadth for the rounding of degrees to radians and back.
-            if !(lower - 1e-9..=upper + 1e-9).contains(angle) {
-                let message =
-                    format!("{angle}° is out of the range {lower}° to {upper}° of {}", joint.name);
-                return Err(self.document.error_at(table.joints_deg.span(), message, None));
-            }
-        }
-        let [yaw, pitch, roll] = table.base_zyx_deg.get_ref().map(|angle| angle.0.to_radians());
-        Ok(Posture {
-            joints: angles.iter().map(|a| a.0.to_radians()).collect(),
-            base: UnitQuaternion::from_euler_angles(roll, pitch, yaw),
-        })
-    }
-
-    fn limit(&self, limit: &Spanned<PerJoint>) -> Result<Vec<f64>, InputError> {
-        let values = match limit.get_ref() {
-            PerJoint::All(value) => vec![*value; self.robot.joint_count()],
-            PerJoint::Each(values) => values.clone(),
-        };
-        self.check_length(limit, values.len())?;
-        Ok(values.into_iter().map(f64::to_radians).collect())
-    }
-
-    fn check_length<T>(&self, list: &Spanned<T>, found: usize) -> Result<(), InputError> {
-        let expected = self.robot.joint_count();
-        if found == expected {
-            return Ok(());
-        }
-        let message = format!(
-            "found {found} values, expected {expected}, one for each joint of robot `{}`",
-            self.robot.name()
-        );
-        Err(self.document.error_at(list.span(), message, None))
-    }
 }

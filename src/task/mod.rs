@@ -1,7 +1,15 @@
 //! What is to be done: from where to where, within which limits, weighed how.
 
+mod cones;
 mod file;
+mod joints;
+mod keep_out;
+mod path_limits;
 mod pose;
+mod reader;
+mod shipped;
+mod tables;
+mod way;
 
 use std::sync::Arc;
 
@@ -10,9 +18,13 @@ use nalgebra::UnitQuaternion;
 use serde_json::{Value, json};
 
 use crate::robot::Robot;
-use crate::trajectory::Limits;
+use crate::trajectory::{Limits, SinePolynomial, Spline};
 pub use file::TaskTable;
+pub use path_limits::{ClearanceLimit, Cone, Impossible, PathLimits, TurnFrom, bodies_of};
 pub use pose::{PoseTable, PostureParts};
+
+/// `K_b` where a file says nothing (eq. 33).
+const BASE_WEIGHT: f64 = 0.9;
 
 /// A rest-to-rest motion of the arm that is also to turn the base.
 #[derive(Debug, Clone)]
@@ -29,21 +41,48 @@ pub struct Task {
     pub base_weight: f64,
     /// How far from its goal the base may end where the goal is a demand \[rad\]; the cost does not depend on it.
     pub goal_tolerance: f64,
+    /// What the motion has to keep to on its way.
+    pub path: PathLimits,
 }
 
 impl Task {
     /// All that a motion's cost follows from, as JSON: [`Robot::identity`], `start` and `goal` with `joints`
     /// \[rad or m\] and `base`, a quaternion `w, x, y, z` from base axes to inertial axes, `limits` on rate,
-    /// acceleration and jerk per joint, and `base_weight`.
+    /// acceleration and jerk per joint, `base_weight` and, where anything is asked for on the way, `path`.
     #[cfg(feature = "harness")]
     pub(crate) fn identity(&self) -> Value {
-        json!({
+        let mut identity = json!({
             "robot": self.robot.identity(),
             "start": self.start.identity(),
             "goal": self.goal.identity(),
             "limits": self.limits.0,
             "base_weight": self.base_weight,
-        })
+        });
+        if let Some(path) = self.path.identity(&self.robot) {
+            identity["path"] = path;
+        }
+        identity
+    }
+
+    /// All sine polynomials from start to goal, with so many terms.
+    ///
+    /// # Panics
+    ///
+    /// Panics without a term, or when start or goal are not the robot's.
+    pub fn sine_polynomials(&self, terms: usize) -> SinePolynomial {
+        let ranges: Vec<[f64; 2]> = self.robot.joints().map(|joint| joint.range).collect();
+        let family = SinePolynomial::new(&ranges, &self.start.joints, &self.goal.joints, terms);
+        family.following(self.robot.follows())
+    }
+
+    /// All splines from start to goal, over so many pieces.
+    ///
+    /// # Panics
+    ///
+    /// Panics where [`Spline::new`] does, or when start or goal are not the robot's.
+    pub fn splines(&self, pieces: usize, degree: usize) -> Spline {
+        let family = Spline::new(&self.start.joints, &self.goal.joints, pieces, degree);
+        family.following(self.robot.follows())
     }
 
     /// What is left to do at the start, if it is nothing: the angle \[rad\], within the goal's tolerance, by which the base is off.
@@ -65,14 +104,15 @@ impl Task {
         let limit = |limits: &[f64; 3]| limits.get(order).copied();
         let first = self.limits.0.first().and_then(limit)?;
         let uniform = self.limits.0.iter().all(|limits| limit(limits) == Some(first));
-        uniform.then(|| (first.to_degrees() * 1e9).round() / 1e9)
+        (uniform && self.robot.sliding_joint().is_none())
+            .then(|| (first.to_degrees() * 1e9).round() / 1e9)
     }
 }
 
-/// Joint angles and base attitude, at rest.
+/// Joint positions and base attitude, at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posture {
-    /// Joint angles \[rad\].
+    /// Joint positions \[rad or m\].
     pub joints: Vec<f64>,
     /// Turns base axes into inertial axes.
     pub base: UnitQuaternion<f64>,

@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use super::joints::Positions;
 use crate::input::Finite;
+use crate::robot::Robot;
 
 /// A pair of start and goal; what it leaves out is the task's.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -17,23 +19,28 @@ pub struct PoseTable {
     pub goal: PostureParts,
 }
 
-/// Joint angles, base attitude, or both.
+/// Joint positions, base attitude, or both.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct PostureParts {
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) joints_deg: Option<Spanned<Vec<Finite>>>,
+    pub(super) joints_deg: Option<Spanned<Positions>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) joints: Option<Spanned<Positions>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) base_zyx_deg: Option<[Finite; 3]>,
 }
 
 impl PostureParts {
-    /// Both parts: joint angles, and the base's yaw, pitch and roll \[°\].
-    pub fn new(joints_deg: Vec<f64>, base_zyx_deg: [f64; 3]) -> Self {
-        let joints = joints_deg.into_iter().map(Finite).collect();
-        Self {
-            joints_deg: Some(Spanned::new(0..0, joints)),
-            base_zyx_deg: Some(base_zyx_deg.map(Finite)),
+    /// Both parts: positions of a robot's joints \[° or m\], all or those that follow none, and the base's yaw, pitch and roll \[°\].
+    pub fn new(robot: &Robot, positions: Vec<f64>, base_zyx_deg: [f64; 3]) -> Self {
+        let positions = Positions::Each(positions.into_iter().map(Finite).collect());
+        let positions = Some(Spanned::new(0..0, positions));
+        let base_zyx_deg = Some(base_zyx_deg.map(Finite));
+        if robot.sliding_joint().is_none() {
+            Self { joints_deg: positions, base_zyx_deg, ..Self::default() }
+        } else {
+            Self { joints: positions, base_zyx_deg, ..Self::default() }
         }
     }
 

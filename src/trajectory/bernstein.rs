@@ -32,7 +32,18 @@ impl Bernstein {
         points[0]
     }
 
-    fn derivative(&self) -> Self {
+    /// What no value exceeds in magnitude.
+    pub(super) fn largest(&self) -> f64 {
+        self.coefficients().iter().fold(0.0, |largest, c| f64::max(largest, c.abs()))
+    }
+
+    /// Between what all values lie.
+    pub(super) fn hull(&self) -> [f64; 2] {
+        let start = [self.coefficients[0]; 2];
+        self.coefficients().iter().fold(start, |[least, most], &c| [c.min(least), c.max(most)])
+    }
+
+    pub(super) fn derivative(&self) -> Self {
         let mut coefficients = [0.0; MOST + 1];
         for (own, pair) in coefficients.iter_mut().zip(self.coefficients().windows(2)) {
             *own = (pair[1] - pair[0]) * self.degree as f64;

@@ -121,36 +121,65 @@ impl Knots {
         all
     }
 
+    /// The values at a time of one piece of the basis functions of every degree up to the spline's own that are not zero there:
+    /// `functions[q]` of degree `q`, one more than `q` in number (the Cox–de Boor recurrence, de Boor 2001, chapter X).
+    fn functions(&self, piece: usize, tau: f64) -> [Local; MOST_DEGREE + 1] {
+        let first = piece + self.degree;
+        let mut all = [Local::default(); MOST_DEGREE + 1];
+        all[0][0] = 1.0;
+        for q in 1..=self.degree {
+            for r in 0..q {
+                let [low, high] = [self.knot(first + 1 + r - q), self.knot(first + 1 + r)];
+                let share = all[q - 1][r] / (high - low);
+                all[q][r] += (high - tau) * share;
+                all[q][r + 1] = (tau - low) * share;
+            }
+        }
+        all
+    }
+
+    /// The value and derivatives at a time of one piece of the spline with these control points there. A `k`-th derivative is a
+    /// spline of a degree lower by `k`, whose control points are differences.
+    fn values<const N: usize>(
+        &self,
+        piece: usize,
+        functions: &[Local; MOST_DEGREE + 1],
+        mut points: Local,
+    ) -> [f64; N] {
+        let mut values = [0.0; N];
+        for (order, value) in values.iter_mut().enumerate().take(self.degree + 1) {
+            let degree = self.degree - order;
+            if order > 0 {
+                for k in 0..=degree {
+                    points[k] = (points[k + 1] - points[k]) * self.quotient(piece + k, order);
+                }
+            }
+            let terms = points.iter().zip(&functions[degree]).take(degree + 1);
+            *value = terms.map(|(point, function)| point * function).sum();
+        }
+        values
+    }
+
     /// The derivatives by `τ`, from the value on, of the basis functions that are not zero at a time: those
     /// from the piece's own number on, one more than the degree.
     pub fn bumps<const N: usize>(&self, tau: f64) -> (usize, [[f64; N]; MOST_DEGREE + 1]) {
         let piece = self.piece_at(tau);
+        let functions = self.functions(piece, tau);
         let mut bumps = [[0.0; N]; MOST_DEGREE + 1];
         for (i, bump) in bumps.iter_mut().enumerate().take(self.degree + 1) {
             let mut points = Local::default();
             points[i] = 1.0;
-            for (order, value) in bump.iter_mut().enumerate().take(self.degree + 1) {
-                if order > 0 {
-                    for k in 0..=self.degree - order {
-                        points[k] = (points[k + 1] - points[k]) * self.quotient(piece + k, order);
-                    }
-                }
-                *value = self.blossom(piece, order, points, &[tau; MOST_DEGREE]);
-            }
+            *bump = self.values(piece, &functions, points);
         }
         (piece, bumps)
     }
 
     /// The value and derivatives at a time of the spline with these control points.
     pub fn derivatives<const N: usize>(&self, points: &[f64], tau: f64) -> [f64; N] {
-        let (first, bumps) = self.bumps::<N>(tau);
-        let mut sums = [0.0; N];
-        for (point, bump) in points[first..].iter().zip(&bumps[..=self.degree]) {
-            for (sum, value) in sums.iter_mut().zip(bump) {
-                *sum += point * value;
-            }
-        }
-        sums
+        let piece = self.piece_at(tau);
+        let mut own = Local::default();
+        own[..=self.degree].copy_from_slice(&points[piece..=piece + self.degree]);
+        self.values(piece, &self.functions(piece, tau), own)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::scalar::{Pair, Scalar};
 ///
 /// A joint's position is a function of a *phase*, `θ = g(s(τ))`, and the phase is linear in the joint's own
 /// coefficients, `s = s_0(τ) + Σ_k c_k b_k(τ)`. For a spline `g` is the identity. Coefficients are ordered
-/// joint by joint.
+/// joint by joint. A joint that follows another one has that one's phase and coefficients, and a `g` of its own.
 ///
 /// What takes a `T` works in lanes: implementations have to be `#[inline(always)]`, like all that they call.
 pub trait Family: Debug + Clone + Send + Sync + 'static {
@@ -34,7 +34,10 @@ pub trait Family: Debug + Clone + Send + Sync + 'static {
     /// Free coefficients in all.
     fn dimension(&self) -> usize;
 
-    /// The places of a joint's own coefficients among all.
+    /// The joints that follow none, each of which has coefficients of its own.
+    fn leading(&self) -> &[usize];
+
+    /// The places of a joint's coefficients among all; of a joint that follows another one they are that one's.
     fn coefficients_of(&self, joint: usize) -> Range<usize>;
 
     /// So many panels of equal width at least, for rules of quadrature that want smooth paths in each.

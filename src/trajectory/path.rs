@@ -3,12 +3,13 @@
 use super::basis::Basis;
 use super::family::AtPhase;
 use super::window::{BINOMIAL, ORDERS, leibniz, step, windowed};
+use crate::robot::Follow;
 use crate::scalar::Scalar;
 
 /// What a joint's range and end points say of its path.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
-    /// Half the range, `Δ_1` \[rad\].
+    /// Half the range, `Δ_1` \[rad\]; negative where the joint follows another one the other way.
     amplitude: f64,
     /// Middle of the range, `Δ_2` \[rad\].
     centre: f64,
@@ -25,6 +26,15 @@ impl Span {
         let phase = |angle: f64| ((angle - centre) / amplitude).clamp(-1.0, 1.0).asin();
         let start_phase = phase(start);
         Self { amplitude, centre, start_phase, phase_change: phase(goal) - start_phase }
+    }
+
+    /// That of a joint which follows this one's.
+    pub(super) fn followed(&self, follow: &Follow) -> Self {
+        Self {
+            amplitude: follow.multiplier * self.amplitude,
+            centre: follow.position(self.centre),
+            ..*self
+        }
     }
 }
 

@@ -57,9 +57,13 @@ impl Family for SinePolynomial {
         self.dimension()
     }
 
+    fn leading(&self) -> &[usize] {
+        self.rows().leading()
+    }
+
     #[inline(always)]
     fn coefficients_of(&self, joint: usize) -> Range<usize> {
-        joint * self.terms()..(joint + 1) * self.terms()
+        self.places(joint)
     }
 
     fn nodes(&self, times: impl IntoIterator<Item = f64>) -> Grid<2> {

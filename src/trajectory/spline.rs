@@ -5,9 +5,11 @@ use std::ops::Range;
 use super::bspline::{Knots, MOST_DEGREE};
 use super::family::{AtPhase, Curve, Family, Site};
 use super::peaks::{Limits, LocalPeak, Peaks};
+use super::rows::Rows;
 use super::spline_peaks::{SplineSampler, SplineSamples};
 use super::window::step;
 use crate::lanes::{Block, Lanes, MOST};
+use crate::robot::Follow;
 use crate::scalar::Scalar;
 
 /// Control points at each end that rest there fixes: with the angle, a rate and an acceleration of zero.
@@ -25,12 +27,13 @@ const COARSEST: usize = 8;
 /// with the step `σ = 10ξ³ − 15ξ⁴ + 6ξ⁵` at the places `ξ_i` where control points belong, so that without
 /// coefficients every joint goes straight from start to goal. In degree 3 the jerk is constant on each piece, in degree
 /// 4 it is continuous, in degree 5 so is its slope. The coefficients \[rad\] are ordered joint by joint,
-/// `pieces + degree − 6` for each.
+/// `pieces + degree − 6` for each that follows no other.
 #[derive(Debug, Clone)]
 pub struct Spline {
     knots: Knots,
-    /// Start and goal of every joint \[rad\].
+    /// Start and goal of every joint, or of the one that it follows \[rad\].
     ends: Vec<[f64; 2]>,
+    rows: Rows,
     /// `σ(ξ_i)`, zero and one at the control points that rest fixes.
     straight: Vec<f64>,
 }
@@ -45,10 +48,26 @@ impl Spline {
     pub fn new(start: &[f64], goal: &[f64], pieces: usize, degree: usize) -> Self {
         assert_eq!(start.len(), goal.len(), "a start and a goal for each joint");
         let ends = start.iter().zip(goal).map(|(start, goal)| [*start, *goal]).collect();
-        Self::between(ends, pieces, degree)
+        Self::between(ends, Rows::own(start.len()), pieces, degree)
     }
 
-    fn between(ends: Vec<[f64; 2]>, pieces: usize, degree: usize) -> Self {
+    /// The same where joints follow others, whatever their own start and goal.
+    ///
+    /// # Panics
+    ///
+    /// Panics unless there is an entry for each joint, or where a leader does not exist or follows another joint itself.
+    #[must_use]
+    pub fn following(mut self, follows: &[Option<Follow>]) -> Self {
+        assert_eq!(follows.len(), self.ends.len(), "whether each joint follows another one");
+        for (joint, follow) in follows.iter().enumerate() {
+            if let Some(follow) = follow {
+                self.ends[joint] = self.ends[follow.leader];
+            }
+        }
+        Self { rows: Rows::following(follows), ..self }
+    }
+
+    fn between(ends: Vec<[f64; 2]>, rows: Rows, pieces: usize, degree: usize) -> Self {
         assert!((3..=MOST_DEGREE).contains(&degree), "degree 3, 4 or 5");
         assert!(pieces + degree > 2 * FIXED, "something free");
         let knots = Knots::new(pieces, degree);
@@ -58,7 +77,12 @@ impl Spline {
             _ if i + FIXED >= points => 1.0,
             _ => step::<1>(knots.place_of(i))[0],
         });
-        Self { straight: straight.collect(), knots, ends }
+        Self { straight: straight.collect(), knots, ends, rows }
+    }
+
+    /// The same over so many pieces.
+    fn with_pieces(&self, pieces: usize) -> Self {
+        Self::between(self.ends.clone(), self.rows.clone(), pieces, self.knots.degree())
     }
 
     /// The knots of every joint.
@@ -84,6 +108,11 @@ impl Spline {
         }
         for (point, coefficient) in points[FIXED..].iter_mut().zip(own) {
             *point += coefficient;
+        }
+        if let Some(follow) = self.rows.follow(joint) {
+            for point in points {
+                *point = follow.position(*point);
+            }
         }
     }
 }
@@ -141,6 +170,14 @@ impl SplineNodes {
 pub struct SplineCurve<'a> {
     family: &'a Spline,
     points: Vec<f64>,
+    /// By what the points follow the coefficients.
+    multiplier: f64,
+}
+
+/// The last of `N` derivatives, from the value on, of the basis functions that are not zero at a time, and the number of the first.
+fn bumps_of<const N: usize>(knots: &Knots, tau: f64) -> (usize, [f64; MOST_DEGREE + 1]) {
+    let (first, bumps) = knots.bumps::<N>(tau);
+    (first, bumps.map(|derivatives| derivatives[N - 1]))
 }
 
 impl Curve for SplineCurve<'_> {
@@ -149,10 +186,18 @@ impl Curve for SplineCurve<'_> {
     }
 
     fn coefficient_slopes(&self, order: usize, tau: f64) -> impl Iterator<Item = f64> {
-        let (first, bumps) = self.family.knots.bumps::<6>(tau);
-        let degree = self.family.knots.degree();
+        let knots = &self.family.knots;
+        let (first, bumps) = match order {
+            0 => bumps_of::<1>(knots, tau),
+            1 => bumps_of::<2>(knots, tau),
+            2 => bumps_of::<3>(knots, tau),
+            3 => bumps_of::<4>(knots, tau),
+            _ => bumps_of::<6>(knots, tau),
+        };
+        let degree = knots.degree();
+        let multiplier = self.multiplier;
         (0..self.family.free()).map(move |k| match (k + FIXED).checked_sub(first) {
-            Some(i) if i <= degree => bumps[i][order],
+            Some(i) if i <= degree => multiplier * bumps[i],
             _ => 0.0,
         })
     }
@@ -169,17 +214,21 @@ impl Family for Spline {
     type Curve<'a> = SplineCurve<'a>;
 
     fn joints(&self) -> usize {
-        self.ends.len()
+        self.rows.joints()
     }
 
     fn dimension(&self) -> usize {
-        self.joints() * self.free()
+        self.rows.count() * self.free()
+    }
+
+    fn leading(&self) -> &[usize] {
+        self.rows.leading()
     }
 
     #[inline(always)]
     fn coefficients_of(&self, joint: usize) -> Range<usize> {
-        let free = self.free();
-        joint * free..(joint + 1) * free
+        let (row, free) = (self.rows.of(joint), self.free());
+        row * free..(row + 1) * free
     }
 
     /// Whole panels per piece.
@@ -216,8 +265,18 @@ impl Family for Spline {
     }
 
     #[inline(always)]
-    fn at_phase<T: Scalar>(&self, _joint: usize, [angle, rate]: [T; 2]) -> AtPhase<T> {
-        AtPhase { angle, rate, angle_slope: T::of(1.0), rate_slope: T::of(0.0) }
+    fn at_phase<T: Scalar>(&self, joint: usize, [angle, rate]: [T; 2]) -> AtPhase<T> {
+        let rate_slope = T::of(0.0);
+        let Some(Follow { multiplier, offset, .. }) = self.rows.follow(joint) else {
+            return AtPhase { angle, rate, angle_slope: T::of(1.0), rate_slope };
+        };
+        let multiplier = T::of(multiplier);
+        AtPhase {
+            angle: multiplier.mul_add(angle, T::of(offset)),
+            rate: multiplier * rate,
+            angle_slope: multiplier,
+            rate_slope,
+        }
     }
 
     #[inline(always)]
@@ -236,15 +295,15 @@ impl Family for Spline {
     fn coarser(&self) -> Option<Self> {
         let half = self.knots.pieces() / 2;
         let is_one = self.knots.pieces().is_multiple_of(2) && half >= COARSEST;
-        is_one.then(|| Self::between(self.ends.clone(), half, self.knots.degree()))
+        is_one.then(|| self.with_pieces(half))
     }
 
     fn prolong(&self, coefficients: &[f64]) -> Vec<f64> {
-        let finer = Self::between(self.ends.clone(), 2 * self.knots.pieces(), self.knots.degree());
+        let finer = self.with_pieces(2 * self.knots.pieces());
         let mut own = vec![0.0; self.knots.points()];
         let mut straight = vec![0.0; finer.knots.points()];
         let mut all = Vec::with_capacity(finer.dimension());
-        for joint in 0..self.joints() {
+        for &joint in self.leading() {
             self.write_points(joint, &coefficients[self.coefficients_of(joint)], &mut own);
             finer.write_points(joint, &[], &mut straight);
             let points = self.knots.split(&own);
@@ -317,7 +376,10 @@ impl Family for Spline {
             let first = (site.first + skipped).saturating_sub(FIXED);
             let count = (MOST_DEGREE + 1 - skipped).min(free.saturating_sub(first));
             site.slopes[count..].fill(0.0);
-            site.first = site.joint * free + first;
+            if let Some(Follow { multiplier, .. }) = self.rows.follow(site.joint) {
+                site.slopes = site.slopes.map(|slope| multiplier * slope);
+            }
+            site.first = self.rows.of(site.joint) * free + first;
             each(&site);
         });
     }
@@ -325,7 +387,8 @@ impl Family for Spline {
     fn curve(&self, joint: usize, own: &[f64]) -> SplineCurve<'_> {
         let mut points = vec![0.0; self.knots.points()];
         self.write_points(joint, own, &mut points);
-        SplineCurve { family: self, points }
+        let multiplier = self.rows.follow(joint).map_or(1.0, |follow| follow.multiplier);
+        SplineCurve { family: self, points, multiplier }
     }
 }
 

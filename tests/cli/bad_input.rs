@@ -5,7 +5,7 @@ use crate::folder::{Folder, stderr};
 
 /// The paper's robot with one text replaced by another.
 fn robot(from: &str, to: &str) -> String {
-    let text = include_str!("../../src/robot/xiao2023.toml");
+    let text = include_str!("../../src/robot/shipped/xiao2023.toml");
     assert!(text.contains(from), "{from:?} is not in the robot file");
     text.replacen(from, to, 1)
 }
@@ -35,7 +35,7 @@ fn tasks() {
         ("limits_too_few", "[task.limits]\nrate_deg_s = [60, 60]\n"),
         ("limit_infinite", "[task.limits]\nacceleration_deg_s2 = inf\n"),
         ("limit_of_wrong_type", "[task.limits]\nacceleration_deg_s2 = 'high'\n"),
-        ("limit_of_the_base", "[task.limits]\nbase_rate_deg_s = 1\n"),
+        ("unknown_limit", "[task.limits]\nbase_speed_deg_s = 1\n"),
         ("weight_out_of_range", "[task.weights]\nbase = 1.5\n"),
         ("unknown_robot", "[task]\nrobot = 'xiao2032'\n"),
         ("no_terms", "[trajectory]\nterms = 0\n"),
@@ -226,6 +226,24 @@ fn experiments() {
             "experiment.toml",
             text,
         );
+    }
+}
+
+#[cfg(feature = "harness")]
+#[test]
+fn sweeps_on_the_way() {
+    let cone = "base_cone = { axis = [1, 0, 0], from = [1, 0, 0], within_deg = 80 }\n";
+    for (name, limits, sweep) in [
+        ("cone_without_one", "", "base_cone_deg = [20, 30]"),
+        ("cone_too_wide", cone, "base_cone_deg = [20, 180]"),
+        ("cone_too_narrow", cone, "base_cone_deg = [80, 2]"),
+        ("clearance_negative", "", "clearance_m = [0, -0.1]"),
+        ("turn_from_the_start", "base_turn_from = 'start'\n", "base_turn_deg = [20, 5]"),
+    ] {
+        let text = format!(
+            "name = 'x'\n[task.limits]\n{limits}[sweep]\n{sweep}\n[[optimiser]]\nrandom = {{}}\n"
+        );
+        rejects(&format!("sweep_{name}"), &["check", "experiment.toml"], "experiment.toml", text);
     }
 }
 

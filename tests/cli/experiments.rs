@@ -117,7 +117,8 @@ fn edited_experiments_keep_what_still_fits() {
 /// What a run determines stands in its row, and its inputs beside it run again.
 #[test]
 fn results_say_how_to_get_them_again() {
-    let robot = include_str!("../../src/robot/xiao2023.toml").replace("mass = 600", "mass = 700");
+    let robot =
+        include_str!("../../src/robot/shipped/xiao2023.toml").replace("mass = 600", "mass = 700");
     let text = SMALL.replace("[sweep]", &format!("{OWN_ARM}[sweep]"));
     let folder = Folder::new().with("small.toml", text).with("arm.toml", robot);
     run(&folder, &["small.toml", "--out", "out"]);
@@ -244,7 +245,7 @@ fn shipped_experiments_are_valid() {
 /// the experiment is done.
 #[test]
 fn runs_that_find_nothing_are_recorded() {
-    let robot = include_str!("../../src/robot/xiao2023.toml");
+    let robot = include_str!("../../src/robot/shipped/xiao2023.toml");
     let heavy = |line: &str| {
         if line.starts_with("mass = ") { "mass = 1e308".to_owned() } else { line.to_owned() }
     };
@@ -254,6 +255,9 @@ fn runs_that_find_nothing_are_recorded() {
     let output = folder.run(&["run", "small.toml", "--out", "out"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("warning: 12 of 12 runs failed or found nothing"));
+    let status = stdout(&folder.run(&["status", "out"]));
+    assert!(status.contains("12 of 12 runs are stored, 12 failed, 0 missing"), "{status}");
+    assert!(status.contains("seed 1: no evaluation had a finite cost"), "{status}");
     for runs in single_rows(&folder.path().join("out/runs")) {
         assert_eq!(runs.column("evaluations").unwrap().u64().unwrap().get(0), Some(700));
         assert!(runs.column("j").unwrap().get(0).unwrap().is_null());

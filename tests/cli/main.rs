@@ -6,16 +6,21 @@ mod experiments;
 #[cfg(feature = "harness")]
 mod export;
 mod folder;
+mod followers;
 #[cfg(feature = "harness")]
 mod import;
 #[cfg(feature = "harness")]
 mod import_instances;
 #[cfg(feature = "harness")]
 mod import_mistakes;
+mod on_the_way;
 #[cfg(feature = "harness")]
 mod processes;
+mod replay_mistakes;
+mod replays;
 #[cfg(feature = "harness")]
 mod reports;
+mod robots;
 #[cfg(feature = "harness")]
 mod shards;
 #[cfg(feature = "harness")]

@@ -72,7 +72,7 @@ fn robots_of_earlier_versions_are_kept() {
     let text = SMALL.replace("functions = { name = ['sphere'], dimension = [3] }", &task);
     let mut folder = Folder::new().with("small.toml", text);
     for mass in ["mass = 600", "mass = 700", "mass = 800"] {
-        let arm = include_str!("../../src/robot/xiao2023.toml").replace("mass = 600", mass);
+        let arm = include_str!("../../src/robot/shipped/xiao2023.toml").replace("mass = 600", mass);
         folder = folder.with("arm.toml", arm);
         run(&folder, &["small.toml", "--out", "out"]);
     }

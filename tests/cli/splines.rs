@@ -111,7 +111,7 @@ fn motions_of_runs_replay_and_are_exported() {
 #[test]
 fn robots_are_instances() {
     let arm = |joints: usize| {
-        let robot = include_str!("../../src/robot/xiao2023.toml");
+        let robot = include_str!("../../src/robot/shipped/xiao2023.toml");
         let parts: Vec<&str> = robot.split("[[joint]]").take(joints + 1).collect();
         parts.join("[[joint]]")
     };
@@ -139,7 +139,7 @@ fn robots_are_instances() {
 /// Files of tasks are instances, too, each with its own robot.
 #[test]
 fn tasks_are_instances() {
-    let robot = include_str!("../../src/robot/xiao2023.toml");
+    let robot = include_str!("../../src/robot/shipped/xiao2023.toml");
     let three: Vec<&str> = robot.split("[[joint]]").take(4).collect();
     let task = "[task]\nrobot = 'three.toml'\n\
         start = { joints_deg = [0, 0, 0], base_zyx_deg = [6, 15, 7] }\n\

@@ -87,3 +87,59 @@ fn sweeps_cover_budgets_and_extreme_weights() {
     let again = folder.run(&["run", "out/experiment.toml", "--out", "out"]);
     assert!(stderr(&again).contains("16 of 16 runs are stored already"), "{}", stderr(&again));
 }
+
+/// The folder's stored runs, and the values of a column by instance.
+fn values(folder: &Path, column: &str) -> BTreeMap<String, Option<f64>> {
+    let runs = single_rows(folder).into_iter().map(|runs| {
+        let instance = runs.column("instance").unwrap().str().unwrap().get(0).unwrap().to_owned();
+        (instance, runs.column(column).unwrap().f64().unwrap().get(0))
+    });
+    runs.collect()
+}
+
+/// Every setting of the way is swept, is stored with its runs, and changes the recipe of a run.
+#[test]
+fn sweeps_cover_limits_on_the_way() {
+    for (key, values_of_key, column) in [
+        ("base_turn_deg", [20.0, 40.0], "base_turn_limit_deg"),
+        ("base_cone_deg", [60.0, 90.0], "base_cone_deg"),
+        ("base_rate_deg_s", [1.5, 3.0], "base_rate_limit_deg_s"),
+        ("tool_speed_m_s", [0.25, 0.5], "tool_speed_limit_m_s"),
+        ("torque_n_m", [5.0, 10.0], "torque_limit_n_m"),
+        ("clearance_m", [0.0, 0.01], "clearance_limit_m"),
+        ("weight_largest_turn", [0.01, 0.02], "weight_largest_turn"),
+        ("weight_mean_turn", [0.01, 0.02], "weight_mean_turn"),
+    ] {
+        let [low, high] = values_of_key;
+        let cone = if key == "base_cone_deg" {
+            "[task.limits]\nbase_cone = { axis = [1, 0, 0], from = [1, 0, 0], within_deg = 80 }\n"
+        } else {
+            ""
+        };
+        let text = format!(
+            "name = 'x'\nseeds = 1\nbudget = {{ evaluations = 5 }}\n{cone}\
+             [sweep]\n{key} = [{low}, {high}]\n[[optimiser]]\nrandom = {{}}\n"
+        );
+        let folder = Folder::new().with("x.toml", text);
+        run(&folder, &["x.toml", "--out", "out"]);
+        let runs = folder.path().join("out/runs");
+        let expected = values_of_key.map(|value| (format!("{key}={value}"), Some(value)));
+        assert_eq!(values(&runs, column), BTreeMap::from(expected), "{key}");
+        assert!(values(&runs, "largest_base_turn_deg").values().all(|turn| *turn > Some(0.0)));
+        assert!(values(&runs, "path_excess").values().all(|excess| *excess >= Some(0.0)));
+    }
+}
+
+/// What a task does not ask for is not worked out, and says nothing.
+#[test]
+fn nothing_on_the_way_is_told_where_nothing_is_asked_for() {
+    let text = "name = 'x'\nseeds = 1\nbudget = { evaluations = 5 }\n[[optimiser]]\nrandom = {}\n";
+    let folder = Folder::new().with("x.toml", text);
+    run(&folder, &["x.toml", "--out", "out"]);
+    let runs = folder.path().join("out/runs");
+    for column in ["base_turn_limit_deg", "largest_base_turn_deg", "clearance_m", "path_excess"] {
+        assert_eq!(values(&runs, column), BTreeMap::from([(String::new(), None)]), "{column}");
+    }
+    let best = std::fs::read_to_string(folder.path().join("out/tables/best.csv")).unwrap();
+    assert!(!best.contains("base_turn_limit_deg"), "{best}");
+}

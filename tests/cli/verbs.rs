@@ -148,7 +148,7 @@ fn plan_is_free_form_unless_told_otherwise() {
 /// A goal that is out of reach is said to be, and so is one that a wider tolerance takes in.
 #[test]
 fn plan_says_whether_the_goal_is_reached() {
-    let robot = include_str!("../../src/robot/xiao2023.toml");
+    let robot = include_str!("../../src/robot/shipped/xiao2023.toml");
     let one: Vec<&str> = robot.split("[[joint]]").take(2).collect();
     let task = "[task]\nrobot = 'one.toml'\n\
         start = { joints_deg = [10], base_zyx_deg = [6, 15, 7] }\n\
@@ -242,8 +242,11 @@ fn plan_takes_another_robot() {
 /// A base of 90 t: ending a degree nearer costs more time than it gains. That is said, and the weight that is advised brings it there.
 #[test]
 fn a_weight_that_is_too_small_is_told() {
-    let robot =
-        include_str!("../../src/robot/xiao2023.toml").replacen("mass = 600", "mass = 90000", 1);
+    let robot = include_str!("../../src/robot/shipped/xiao2023.toml").replacen(
+        "mass = 600",
+        "mass = 90000",
+        1,
+    );
     let inertia = "xx = 75, yy = 74, zz = 74, xy = 0.25, xz = 0.32, yz = 0.19";
     let robot = robot.replacen(inertia, "xx = 11250, yy = 11100, zz = 11100", 1);
     let task = "[task]\nrobot = 'heavy.toml'\n\
@@ -359,7 +362,7 @@ fn check_prints_what_is_resolved() {
     let folder = Folder::new()
         .with("task.toml", "[task.limits]\njerk_deg_s3 = 40\n")
         .with("spline.toml", "[trajectory]\nfamily = 'spline'\n")
-        .with("robot.toml", include_str!("../../src/robot/xiao2023.toml"));
+        .with("robot.toml", include_str!("../../src/robot/shipped/xiao2023.toml"));
     for name in ["task", "spline", "robot"] {
         let output = folder.run(&["check", &format!("{name}.toml")]);
         assert!(output.status.success(), "{}", stderr(&output));

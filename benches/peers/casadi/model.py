@@ -63,9 +63,9 @@ class Task:
     """Robot, ends, limits and weights; `terms` free coefficients per joint."""
 
     def __init__(self):
-        table = tomllib.loads((SOURCE / "reorientation/defaults.toml").read_text())
-        task, self.terms = table["task"], table["trajectory"]["terms"]
-        robot = tomllib.loads((SOURCE / f"robot/{task['robot']}.toml").read_text())
+        read = lambda name: tomllib.loads((SOURCE / name).read_text())
+        self.terms = read("reorientation/defaults.toml")["trajectory"]["terms"]
+        task, robot = read("task/shipped/xiao2023.toml")["task"], read("robot/shipped/xiao2023.toml")
         self.box = np.array(BOX)
         base = robot["base"]
         self.base_mass, self.base_inertia = base["mass"], inertia(base["inertia"])

@@ -8,6 +8,6 @@ if [ "${1-}" = --free-form ]; then
     comparison=compare_free_form.py
     shift
 fi
-cargo build --release --locked --no-default-features --example peers_starts
+cargo build --release --locked -p driftless --no-default-features --example peers_starts
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 taskset -c "${CPU:-1}" "$python" "$here/$comparison" "$target/release/examples/peers_starts" "$folder" "$@"

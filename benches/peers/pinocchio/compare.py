@@ -97,9 +97,9 @@ def write_problem(problem, motions):
 
     `motions`: how many, then the coefficients of each, joint by joint, drawn from the box.
     """
-    table = tomllib.loads((SOURCE / "reorientation/defaults.toml").read_text())
-    task, trajectory = table["task"], table["trajectory"]
-    robot = tomllib.loads((SOURCE / f"robot/{task['robot']}.toml").read_text())
+    files = ("reorientation/defaults.toml", "task/shipped/xiao2023.toml", "robot/shipped/xiao2023.toml")
+    defaults, table, robot = (tomllib.loads((SOURCE / name).read_text()) for name in files)
+    task, trajectory = table["task"], defaults["trajectory"]
     base, joints = robot["base"], robot["joint"]
     steps, terms = ATTITUDE_STEPS, trajectory["terms"]
     rows = [[steps, terms, len(joints)], body(base, [0, 0, 0]), base["mount"]]

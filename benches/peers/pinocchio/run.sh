@@ -15,6 +15,6 @@ compile() {
 }
 compile "$folder/rollout"
 compile "$folder/rollout-fast-math" -ffast-math -DEIGEN_DONT_VECTORIZE
-cargo build --release --locked --no-default-features --example peers_rollout
+cargo build --release --locked -p driftless --no-default-features --example peers_rollout
 ours=$target/release/examples/peers_rollout
 taskset -c "${CPU:-1}" "$python" "$here/compare.py" "$ours" "$folder" "${1:-30}"

@@ -11,19 +11,21 @@ use crate::exhibit::Table;
 pub(super) fn friedman_table(blocks: &Blocks) -> PolarsResult<Table> {
     let Friedman { chi_square, p, f, f_p, .. } = blocks.friedman;
     let (n, k) = (blocks.costs.len(), blocks.friedman.mean_ranks.len());
+    // Where all blocks rank the optimisers alike F says nothing of how many they are, and its p-value would be zero.
+    let of_f = |number| if f.is_finite() && n > 2 { number } else { f64::NAN };
     let frame = df!(
         "blocks" => [n as u64],
         "block" => [blocks.unit.name()],
         "optimisers" => [k as u64],
         "χ²" => [chi_square],
         "p" => [p],
-        "F" => [f],
-        "p of F" => [f_p],
+        "F" => [of_f(f)],
+        "p of F" => [of_f(f_p)],
         "critical difference" => [critical_difference(k, n, ALPHA)],
     )?;
     let caption = format!(
         "Friedman's test of the final certified costs, with Iman and Davenport's F, and Nemenyi's critical difference \
-         of mean ranks at level {ALPHA}. {}",
+         of mean ranks at level {ALPHA}. F is left out with fewer than three blocks, and where all rank the optimisers alike. {}",
         blocks.told()
     );
     Ok(Table::of("friedman", caption, frame))
@@ -86,5 +88,39 @@ mod tests {
         assert_eq!(frame.get_column_names(), ["block_", "block", "de"]);
         assert_eq!(frame.column("block_").unwrap().str().unwrap().get(1), Some("seed 2"));
         assert_eq!(frame.column("block").unwrap().f64().unwrap().get(1), Some(2.0));
+    }
+
+    /// χ² of costs that all blocks rank alike is n (k − 1); with ranks 1 2 3, 2 1 3 and 1 2 3 it is 14/3, and Demšar's formula
+    /// (2006, p. 11) gives F = 2 χ² / (6 − χ²) = 7.
+    #[test]
+    fn an_f_that_says_nothing_is_left_out() {
+        let found = |seeds: u64, cost: fn(u64, f64) -> f64| {
+            let plan = plan(&format!(
+                "seeds = {seeds}\nbudget = {{ evaluations = 100 }}\n[functions]\nname = ['sphere']\n\
+                 [[optimiser]]\nrandom = {{}}\n[[optimiser]]\nde = {{}}\n[[optimiser]]\npso = {{}}\n",
+            ));
+            let runs = runs(&plan, |run| vec![(1, cost(run.seed, run.optimiser as f64))]);
+            let targets = targets(&plan, &runs);
+            let analysis = Analysis::new(&plan, &runs, &targets);
+            let frame = friedman_table(analysis.blocks.as_ref().unwrap()).unwrap().frame;
+            ["χ²", "F", "p of F"]
+                .map(|name| frame.column(name).unwrap().f64().unwrap().get(0).unwrap())
+        };
+        let alike = |_, optimiser| optimiser;
+        let swapped = |seed, optimiser| {
+            if seed == 2 && optimiser < 2.0 { 1.0 - optimiser } else { optimiser }
+        };
+        for (seeds, cost, statistic) in
+            [(2, alike as fn(u64, f64) -> f64, 4.0), (2, swapped, 3.0), (4, alike, 8.0)]
+        {
+            let [chi_square, f, p] = found(seeds, cost);
+            assert!(chi_square == statistic && f.is_nan() && p.is_nan(), "{chi_square}, {f}, {p}");
+        }
+        let [chi_square, f, p] = found(3, swapped);
+        assert!(
+            (chi_square - 14.0 / 3.0).abs() < 1e-12 && (f - 7.0).abs() < 1e-9,
+            "{chi_square}, {f}"
+        );
+        assert!(p > 0.04 && p < 0.06, "{p}");
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::search::Bend;
+use crate::search::{Bend, Fold};
 
 /// What is known or said to be flat has this share of the largest curvature, lest steps go far for next to nothing.
 const FLOOR: f64 = 1e-4;
@@ -57,7 +57,7 @@ impl Bends {
     }
 }
 
-/// A positive semidefinite second derivative `c_0 I + Σ c_i q_i q_iᵀ` with orthonormal `q_i`.
+/// A positive semidefinite second derivative `c_0 I + Σ c_i q_i q_iᵀ` with `q_i` of unit length.
 #[derive(Default)]
 pub(super) struct Curvature {
     /// `c_0`.
@@ -91,6 +91,18 @@ impl Curvature {
             }
         }
         curvature
+    }
+
+    /// The same and a share of the folds.
+    pub(super) fn folded(mut self, folds: &[Fold], share: f64) -> Self {
+        for Fold { direction, curvature } in folds {
+            let length = direction.norm();
+            if length > 0.0 {
+                self.directions.push(direction / length);
+                self.along.push(share * curvature * length * length);
+            }
+        }
+        self
     }
 
     /// `½ dᵀ B d`.

@@ -67,13 +67,46 @@ impl Row {
     }
 }
 
-/// Minimise over `d`, `β ≥ 0` and `t`
+/// `a · d − e σ ≤ b` with entries in all variables, where `σ` is the time's `β` or one of the `v`.
+#[derive(Debug, Clone)]
+pub(super) struct DenseRow {
+    pub(super) a: DVector<f64>,
+    pub(super) border: Slack,
+    pub(super) e: f64,
+    pub(super) b: f64,
+}
+
+/// What gives way where a dense row is tight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Slack {
+    /// The time's `β`.
+    Time,
+    /// One of the `v`.
+    Term(usize),
+}
+
+impl DenseRow {
+    /// `b − a · d + e σ`, without `b` where it is off.
+    fn room(&self, on: f64, d: &[f64], time: f64, v: &[f64]) -> f64 {
+        let slack = match self.border {
+            Slack::Time => time,
+            Slack::Term(k) => v[k],
+        };
+        let own: f64 = self.a.iter().zip(d).map(|(a, d)| a * d).sum();
+        on * self.b - own + self.e * slack
+    }
+}
+
+/// Minimise over `d`, `β ≥ 0`, `v ≥ 0` and `t`
 ///
 /// ```text
-/// κ · β + W t + ½ dᵀ B d    within the rows, lower ≤ d ≤ upper, ‖r + R d‖ ≤ t
+/// κ · β + w · v + W t + ½ dᵀ B d    within the rows, lower ≤ d ≤ upper, ‖r + R d‖ ≤ t
 /// ```
 pub(super) struct Program<'a> {
     pub(super) rows: &'a [Row],
+    pub(super) dense: &'a [DenseRow],
+    /// `w`.
+    pub(super) terms: &'a [f64],
     pub(super) lower: &'a DVector<f64>,
     pub(super) upper: &'a DVector<f64>,
     /// `κ`.
@@ -92,10 +125,11 @@ pub(super) struct Program<'a> {
     pub(super) here: f64,
 }
 
-/// `d` and the error's multiplier, of a length of `W` at most.
+/// `d`, the error's multiplier, of a length of `W` at most, and those of the dense rows.
 pub(super) struct Minimum {
     pub(super) d: DVector<f64>,
     pub(super) nu: DVector<f64>,
+    pub(super) dense: Vec<f64>,
 }
 
 /// A pair of slack and multiplier.
@@ -109,7 +143,8 @@ struct Pair {
 struct State {
     d: DVector<f64>,
     beta: [f64; 2],
-    /// Of each row both sides, then of every variable upper and lower bound, then of the `β`.
+    v: Vec<f64>,
+    /// Of each row both sides, then of every variable upper and lower bound, then of the `β`, the dense rows and the `v`.
     pairs: Vec<Pair>,
     cone: Cone,
 }
@@ -121,9 +156,10 @@ impl State {
         products.sum::<f64>() + self.cone.s.dot(&self.cone.z)
     }
 
-    fn minimum(&self) -> Minimum {
+    fn minimum(&self, program: &Program<'_>) -> Minimum {
         let nu = DVector::from_fn(COMPONENTS, |i, _| -self.cone.z[i + 1]);
-        Minimum { d: self.d.clone(), nu }
+        let dense = self.pairs[program.dense_pairs()..].iter().map(|pair| pair.dual);
+        Minimum { d: self.d.clone(), nu, dense: dense.take(program.dense.len()).collect() }
     }
 
     /// The largest multiple of a change that keeps slacks and multipliers positive.
@@ -145,6 +181,9 @@ impl State {
         for (beta, change) in self.beta.iter_mut().zip(change.beta) {
             *beta += step * change;
         }
+        for (v, change) in self.v.iter_mut().zip(&change.v) {
+            *v += step * change;
+        }
         for (pair, change) in self.pairs.iter_mut().zip(&change.pairs) {
             pair.slack += step * change.slack;
             pair.dual += step * change.dual;
@@ -158,6 +197,7 @@ impl State {
 struct Change {
     d: DVector<f64>,
     beta: [f64; 2],
+    v: Vec<f64>,
     pairs: Vec<Pair>,
     s: Vector4<f64>,
     z: Vector4<f64>,
@@ -174,7 +214,14 @@ impl Program<'_> {
     }
 
     /// What each pair's constraint leaves at a point, in the order of pairs.
-    fn room(&self, d: &[f64], beta: [f64; 2], constant: bool, mut each: impl FnMut(f64)) {
+    fn room(
+        &self,
+        d: &[f64],
+        beta: [f64; 2],
+        v: &[f64],
+        constant: bool,
+        mut each: impl FnMut(f64),
+    ) {
         let on = f64::from(u8::from(constant));
         for row in self.rows {
             let own = row.along(d);
@@ -187,10 +234,21 @@ impl Program<'_> {
             each(d - on * lower);
         }
         beta.into_iter().for_each(&mut each);
+        for row in self.dense {
+            each(row.room(on, d, beta[0], v));
+        }
+        v.iter().copied().for_each(each);
     }
 
-    /// The gradients of all constraints, each times its number, added up: by `d` and by `β`.
-    fn pull(&self, numbers: &[f64], out: &mut [f64]) -> [f64; 2] {
+    /// The place of the dense rows' pairs among all.
+    fn dense_pairs(&self) -> usize {
+        2 * self.rows.len() + 2 * self.variables() + 2
+    }
+
+    /// The gradients of all constraints, each times its number, added up: by `d`, by `β` and by `v`.
+    fn pull(&self, numbers: &[f64], out: &mut [f64], by_v: &mut [f64]) -> [f64; 2] {
+        let (numbers, dense) = numbers.split_at(self.dense_pairs());
+        let (dense, floors) = dense.split_at(self.dense.len());
         let mut by_beta = [0.0; 2];
         let (rows, rest) = numbers.split_at(2 * self.rows.len());
         for (row, pair) in self.rows.iter().zip(rows.chunks_exact(2)) {
@@ -202,6 +260,16 @@ impl Program<'_> {
         for (out, pair) in out.iter_mut().zip(bounds.chunks_exact(2)) {
             *out += pair[0] - pair[1];
         }
+        for (row, number) in self.dense.iter().zip(dense) {
+            for (out, a) in out.iter_mut().zip(row.a.iter()) {
+                *out += number * a;
+            }
+            match row.border {
+                Slack::Time => by_beta[0] -= row.e * number,
+                Slack::Term(k) => by_v[k] -= row.e * number,
+            }
+        }
+        by_v.iter_mut().zip(floors).for_each(|(by_v, number)| *by_v -= number);
         [by_beta[0] - beta[0], by_beta[1] - beta[1]]
     }
 
@@ -209,39 +277,54 @@ impl Program<'_> {
         let n = self.variables();
         let d = DVector::zeros(n);
         let beta = self.start;
+        // Room for every dense row, and above the floor.
+        let mut v = vec![0.1; self.terms.len()];
+        for row in self.dense {
+            if let Slack::Term(k) = row.border {
+                v[k] = f64::max(v[k], 0.1 - row.b / row.e);
+            }
+        }
         let length = self.error.norm();
         let t = length + 0.1 * (1e-3 + length);
-        let mut pairs = Vec::with_capacity(2 * self.rows.len() + 2 * n + 2);
-        self.room(d.as_slice(), beta, true, |room| {
+        let mut pairs = Vec::with_capacity(self.dense_pairs() + self.dense.len() + v.len());
+        self.room(d.as_slice(), beta, &v, true, |room| {
             let slack = room.max(1e-4);
             pairs.push(Pair { slack, dual: 1.0 / slack });
         });
         // Multipliers in proportion to these, half of the price of time in rows, and what is left in bounds.
         let duals: Vec<f64> = pairs.iter().map(|pair| pair.dual).collect();
         let mut unused = vec![0.0; n];
-        let shared = self.pull(&duals[..], &mut unused);
+        let mut by_v = vec![0.0; v.len()];
+        let shared = self.pull(&duals[..], &mut unused, &mut by_v);
         let mu = 0.5 * self.scale() / -shared[0];
         for pair in &mut pairs {
             pair.dual *= mu;
         }
-        let last = pairs.len() - 2;
+        let last = self.dense_pairs() - 2;
         for k in 0..2 {
             let own = pairs[last + k].dual;
             let rows = -mu * shared[k] - own;
             pairs[last + k].dual = own.max(self.prices[k] - rows);
+        }
+        let floors = pairs.len() - v.len();
+        for (k, by_v) in by_v.iter().enumerate() {
+            let own = pairs[floors + k].dual;
+            let rows = -mu * by_v - own;
+            pairs[floors + k].dual = own.max(self.terms[k] - rows);
         }
         let s = Vector4::new(t, self.error[0], self.error[1], self.error[2]);
         let mut z = s;
         z.fixed_rows_mut::<3>(1).neg_mut();
         // On the central path, and with the norm's weight in front where there is room.
         let z = z * (self.weight / t);
-        State { d, beta, pairs, cone: Cone { s, z } }
+        State { d, beta, v, pairs, cone: Cone { s, z } }
     }
 
-    fn cost(&self, State { d, beta, .. }: &State) -> f64 {
+    fn cost(&self, State { d, beta, v, .. }: &State) -> f64 {
         let prices: f64 = self.prices.iter().zip(beta).map(|(price, beta)| price * beta).sum();
+        let terms: f64 = self.terms.iter().zip(v).map(|(weight, v)| weight * v).sum();
         let left = (self.error + self.slopes * d).norm();
-        prices + self.weight * left + self.curvature.energy(d)
+        prices + terms + self.weight * left + self.curvature.energy(d)
     }
 
     /// The minimum, unless rounding is in the way.
@@ -258,11 +341,11 @@ impl Program<'_> {
             let enough = self.gap.max(SHARE * (self.here - self.cost(&state)));
             let unbalanced = residuals.d.abs().dot(&state.d.abs());
             if gap <= enough && (unbalanced <= enough || miss <= FEASIBLE) {
-                return Some(state.minimum());
+                return Some(state.minimum(self));
             }
             let Some(change) = self.direction(&mut newton, &state, &residuals, gap) else {
                 let is_near = gap <= NEARLY * self.gap && miss <= NEARLY * FEASIBLE;
-                return is_near.then(|| state.minimum());
+                return is_near.then(|| state.minimum(self));
             };
             state.advance(&change, (FRACTION * state.room(&change)).min(1.0));
         }
@@ -303,7 +386,8 @@ impl Program<'_> {
     fn residuals(&self, state: &State) -> Residuals {
         let duals: Vec<f64> = state.pairs.iter().map(|pair| pair.dual).collect();
         let mut by_d = DVector::zeros(self.variables());
-        let by_beta = self.pull(&duals, by_d.as_mut_slice());
+        let mut by_v = self.terms.to_vec();
+        let by_beta = self.pull(&duals, by_d.as_mut_slice(), &mut by_v);
         for i in 0..COMPONENTS {
             for (by_d, slope) in by_d.iter_mut().zip(self.slopes.row(i)) {
                 *by_d -= state.cone.z[i + 1] * slope;
@@ -315,12 +399,13 @@ impl Program<'_> {
         }
         let mut rows = Vec::with_capacity(state.pairs.len());
         let mut slacks = state.pairs.iter();
-        self.room(state.d.as_slice(), state.beta, true, |room| {
+        self.room(state.d.as_slice(), state.beta, &state.v, true, |room| {
             rows.push(slacks.next().map_or(0.0, |pair| pair.slack) - room);
         });
         Residuals {
             d: by_d,
             beta: [self.prices[0] + by_beta[0], self.prices[1] + by_beta[1]],
+            v: by_v,
             t: self.weight - state.cone.z[0],
             rows,
         }
@@ -331,6 +416,7 @@ impl Program<'_> {
 struct Residuals {
     d: DVector<f64>,
     beta: [f64; 2],
+    v: Vec<f64>,
     t: f64,
     rows: Vec<f64>,
 }
@@ -351,18 +437,34 @@ struct System<'a> {
 struct Newton<'a> {
     program: &'a Program<'a>,
     triangle: Triangle,
-    /// Columns of the border, row by row: the error's slopes, the curvature's directions; zero for time and excess.
+    /// Columns of the border, row by row: the error's slopes, the curvature's directions, both zero for time and excess, and
+    /// the dense rows.
     border: Vec<f64>,
+    /// Of each `v` what its floor adds to Newton's matrix, as of the last factors.
+    floors: DVector<f64>,
+    /// How the dense rows follow each `v`: `E`, one row per column of the border.
+    by_v: DMatrix<f64>,
     /// `U⁻ᵀ` times the border.
     lower: Vec<f64>,
     columns: usize,
-    small: Option<Cholesky<f64, Dyn>>,
+    small: Option<Small>,
+}
+
+/// Factors of the system in what the border stands for, and the `v`.
+struct Small {
+    /// Of `S`, without the `v`.
+    factor: Cholesky<f64, Dyn>,
+    /// `S⁻¹ E`.
+    by_v: DMatrix<f64>,
+    /// Of `F + Eᵀ S⁻¹ E`, where `F` are the floors: they may be next to nothing, and are not divided by.
+    of_v: Cholesky<f64, Dyn>,
 }
 
 impl<'a> Newton<'a> {
     fn new(program: &'a Program<'a>) -> Self {
         let n = program.variables();
-        let columns = COMPONENTS + program.curvature.along.len();
+        let first_dense = COMPONENTS + program.curvature.along.len();
+        let columns = first_dense + program.dense.len();
         let extent = |row: &Row| row.a.iter().rposition(|a| *a != 0.0).map_or(0, |last| last + 1);
         let width = program.rows.iter().map(extent).max().unwrap_or(1).max(1);
         let mut border = vec![0.0; (n + BORDER) * columns];
@@ -373,12 +475,28 @@ impl<'a> Newton<'a> {
             for (k, q) in program.curvature.directions.iter().enumerate() {
                 border[i * columns + COMPONENTS + k] = q[i];
             }
+            for (k, row) in program.dense.iter().enumerate() {
+                border[i * columns + first_dense + k] = row.a[i];
+            }
+        }
+        for (k, row) in program.dense.iter().enumerate() {
+            if row.border == Slack::Time {
+                border[n * columns + first_dense + k] = -row.e;
+            }
+        }
+        let mut by_v = DMatrix::zeros(columns, program.terms.len());
+        for (k, row) in program.dense.iter().enumerate() {
+            if let Slack::Term(term) = row.border {
+                by_v[(first_dense + k, term)] = row.e;
+            }
         }
         Self {
             program,
             triangle: Triangle::zeros(n, width),
             lower: border.clone(),
             border,
+            floors: DVector::zeros(program.terms.len()),
+            by_v,
             columns,
             small: None,
         }
@@ -389,7 +507,9 @@ impl<'a> Newton<'a> {
         let (n, columns) = (program.variables(), self.columns);
         self.triangle.clear();
         let (rows, rest) = state.pairs.split_at(2 * program.rows.len());
-        let (bounds, betas) = rest.split_at(2 * n);
+        let (bounds, rest) = rest.split_at(2 * n);
+        let (betas, rest) = rest.split_at(2);
+        let (dense, floors) = rest.split_at(program.dense.len());
         let ratio = |pair: &Pair| pair.dual / pair.slack;
         let mut alone = [0.0; BORDER];
         let mut next = 0;
@@ -439,7 +559,18 @@ impl<'a> Newton<'a> {
         for (k, c) in program.curvature.along.iter().enumerate() {
             small[(COMPONENTS + k, COMPONENTS + k)] += 1.0 / c;
         }
-        self.small = Some(small.cholesky()?);
+        let first = COMPONENTS + program.curvature.along.len();
+        for (i, pair) in dense.iter().enumerate() {
+            small[(first + i, first + i)] += pair.slack / pair.dual;
+        }
+        self.floors = DVector::from_iterator(floors.len(), floors.iter().map(ratio));
+        let factor = small.cholesky()?;
+        let by_v = factor.solve(&self.by_v);
+        let mut of_v = self.by_v.tr_mul(&by_v);
+        for (k, floor) in self.floors.iter().enumerate() {
+            of_v[(k, k)] += floor;
+        }
+        self.small = Some(Small { factor, by_v, of_v: of_v.cholesky()? });
         Some(())
     }
 
@@ -449,7 +580,7 @@ impl<'a> Newton<'a> {
         let program = self.program;
         let n = program.variables();
         // Δλ = (rc + λ ρ + λ (A Δx)) / g
-        let constants: Vec<f64> = state
+        let mut constants: Vec<f64> = state
             .pairs
             .iter()
             .zip(products)
@@ -458,8 +589,16 @@ impl<'a> Newton<'a> {
                 (target - product - pair.slack * pair.dual + pair.dual * rho) / pair.slack
             })
             .collect();
+        // Multipliers of dense rows are unknowns of their own.
+        let dense = program.dense_pairs()..program.dense_pairs() + program.dense.len();
+        let of_dense = constants[dense.clone()].to_vec();
+        constants[dense.clone()].fill(0.0);
         let mut f = DVector::zeros(n + BORDER);
-        let by_beta = program.pull(&constants, &mut f.as_mut_slice()[..n]);
+        let mut f_v = DVector::zeros(state.v.len());
+        let by_beta = program.pull(&constants, &mut f.as_mut_slice()[..n], f_v.as_mut_slice());
+        for (f_v, residual) in f_v.iter_mut().zip(&residuals.v) {
+            *f_v = -*f_v - residual;
+        }
         for i in 0..n {
             f[i] = -f[i] - residuals.d[i];
         }
@@ -476,12 +615,19 @@ impl<'a> Newton<'a> {
         for k in 0..COMPONENTS {
             g[k] = shift[k + 1] + scaling.square(k + 1, 0) * y0;
         }
-        let (mut x, mut y) = self.solve_reduced(&f, &g);
+        let first = COMPONENTS + program.curvature.along.len();
+        for (i, constant) in of_dense.iter().enumerate() {
+            // constant = (rc + λ ρ) / s
+            let pair = state.pairs[dense.start + i];
+            g[first + i] = -constant * pair.slack / pair.dual;
+        }
+        let [mut x, mut y, mut v] = self.solve_reduced([&f, &g, &f_v]);
         for _ in 0..refinements {
-            let (r_f, r_g) = self.miss(system, [&f, &g], [&x, &y]);
-            let (more_x, more_y) = self.solve_reduced(&r_f, &r_g);
+            let [r_f, r_g, r_v] = self.miss(system, [&f, &g, &f_v], [&x, &y, &v]);
+            let [more_x, more_y, more_v] = self.solve_reduced([&r_f, &r_g, &r_v]);
             x += more_x;
             y += more_y;
+            v += more_v;
         }
         let beta = [x[n], x[n + 1]];
         let d = x.rows(0, n).into_owned();
@@ -495,7 +641,7 @@ impl<'a> Newton<'a> {
             + (0..COMPONENTS).map(|j| scaling.square(0, j + 1) * y[j]).sum::<f64>();
         let mut pairs = Vec::with_capacity(state.pairs.len());
         let mut at = 0;
-        program.room(d.as_slice(), beta, false, |more| {
+        program.room(d.as_slice(), beta, v.as_slice(), false, |more| {
             let pair = state.pairs[at];
             let slack = more - residuals.rows[at];
             let dual =
@@ -503,52 +649,60 @@ impl<'a> Newton<'a> {
             pairs.push(Pair { slack, dual });
             at += 1;
         });
-        Change { d, beta, pairs, s, z }
+        Change { d, beta, v: v.data.into(), pairs, s, z }
     }
 
-    /// Solves `K x + Pᵀ y = f`, `P x − N y = g`.
-    fn solve_reduced(&self, f: &DVector<f64>, g: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+    /// Solves `K x + Pᵀ y = f`, `P x − N y − E v = g`, `F v − Eᵀ y = f_v`.
+    fn solve_reduced(&self, [f, g, f_v]: [&DVector<f64>; 3]) -> [DVector<f64>; 3] {
         let columns = self.columns;
         let mut x = f.clone();
         self.triangle.solve_transposed(x.as_mut_slice(), 1);
-        let mut small = -g;
+        let mut y = -g;
         for (row, x) in self.lower.chunks_exact(columns).zip(x.iter()) {
-            for (entry, own) in small.iter_mut().zip(row) {
+            for (entry, own) in y.iter_mut().zip(row) {
                 *entry += own * x;
             }
         }
-        if let Some(factor) = &self.small {
-            factor.solve_mut(&mut small);
+        let mut v = f_v.clone();
+        if let Some(Small { factor, by_v, of_v }) = &self.small {
+            factor.solve_mut(&mut y);
+            v += self.by_v.tr_mul(&y);
+            of_v.solve_mut(&mut v);
+            y -= by_v * &v;
         }
         for (x, row) in x.iter_mut().zip(self.lower.chunks_exact(columns)) {
-            *x -= row.iter().zip(small.iter()).map(|(a, y)| a * y).sum::<f64>();
+            *x -= row.iter().zip(y.iter()).map(|(a, y)| a * y).sum::<f64>();
         }
         self.triangle.solve(x.as_mut_slice());
-        (x, small)
+        [x, y, v]
     }
 
     /// By how much a solution of the reduced system misses its right-hand side.
     fn miss(
         &self,
         System { state, scaling, .. }: &System<'_>,
-        [f, g]: [&DVector<f64>; 2],
-        [x, y]: [&DVector<f64>; 2],
-    ) -> (DVector<f64>, DVector<f64>) {
+        [f, g, f_v]: [&DVector<f64>; 3],
+        [x, y, v]: [&DVector<f64>; 3],
+    ) -> [DVector<f64>; 3] {
         let program = self.program;
         let (columns, n) = (self.columns, program.variables());
         let mut numbers = Vec::with_capacity(state.pairs.len());
         let mut pairs = state.pairs.iter();
-        program.room(&x.as_slice()[..n], [x[n], x[n + 1]], false, |more| {
+        let mut unused = vec![0.0; state.v.len()];
+        program.room(&x.as_slice()[..n], [x[n], x[n + 1]], &unused, false, |more| {
             numbers.push(pairs.next().map_or(0.0, |pair| more * pair.dual / pair.slack));
         });
+        let dense = program.dense_pairs();
+        numbers[dense..].fill(0.0);
         let mut r_f = f.clone();
-        let by_beta = program.pull(&numbers, &mut r_f.as_mut_slice()[..n]);
+        let by_beta = program.pull(&numbers, &mut r_f.as_mut_slice()[..n], &mut unused);
         for k in 0..BORDER {
             r_f[n + k] += by_beta[k];
         }
         r_f.rows_mut(0, n).axpy(-program.curvature.floor, &x.rows(0, n), 1.0);
-        let mut r_g = g.clone();
-        for (i, row) in self.border.chunks_exact(columns).enumerate().take(n) {
+        let mut r_g = g + &self.by_v * v;
+        let r_v = f_v + self.by_v.tr_mul(y) - v.component_mul(&self.floors);
+        for (i, row) in self.border.chunks_exact(columns).enumerate() {
             for (k, entry) in row.iter().enumerate() {
                 r_f[i] -= entry * y[k];
                 r_g[k] -= entry * x[i];
@@ -562,6 +716,10 @@ impl<'a> Newton<'a> {
         for (k, c) in program.curvature.along.iter().enumerate() {
             r_g[COMPONENTS + k] += y[COMPONENTS + k] / c;
         }
-        (r_f, r_g)
+        let first = COMPONENTS + program.curvature.along.len();
+        for (i, pair) in state.pairs[dense..].iter().take(program.dense.len()).enumerate() {
+            r_g[first + i] += y[first + i] * pair.slack / pair.dual;
+        }
+        [r_f, r_g, r_v]
     }
 }

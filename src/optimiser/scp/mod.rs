@@ -17,7 +17,8 @@
 //! Where a problem has a [coarser](crate::search::Problem::coarser) one, random starts are followed on the coarsest, and the
 //! best of their ends on finer ones, fewer on each (successive halving, Jamieson & Talwalkar 2016, arXiv:1502.07943).
 //!
-//! On a [`Timed`](crate::search::Timed) cost the steps are others, for many variables: see `timed.rs`.
+//! On a [`Timed`](crate::search::Timed) cost the steps are others, for many variables: see `timed.rs`. Where such a problem
+//! has a [relaxed](crate::search::Problem::relaxed) one, random starts are followed there first.
 //!
 //! A start has been followed to its end when, with the problem's own weights, a step promises next to
 //! nothing and the Lagrangian is level, the first-order condition of a minimum.
@@ -155,7 +156,7 @@ impl Scp {
         let onward = Self { first_weight: f64::INFINITY, ..self.clone() };
         let (settings, points): (_, Vec<Vec<f64>>) = match ends {
             Some(ends) => (&onward, ends.into_iter().map(|end| end.x).collect()),
-            None => (self, (0..starts).map(|k| Self::random_start(oracle, rng, k)).collect()),
+            None => (self, self.first_points(starts, oracle, rng)?),
         };
         let mut ends =
             oracle.from_each(&points, |oracle, x| settings.follow(oracle, x).map(drop))?;
@@ -166,6 +167,27 @@ impl Scp {
         });
         ends.truncate(points.len().div_ceil(REDUCTION));
         Ok(ends)
+    }
+
+    /// So many random starts. Where a problem can be relaxed, these are followed there, and the best ends are starts beside a few
+    /// random ones.
+    fn first_points(
+        &self,
+        starts: usize,
+        oracle: &mut Oracle<'_>,
+        rng: &mut Rng,
+    ) -> Result<Vec<Vec<f64>>, Stop> {
+        if starts < REDUCTION || oracle.timed_weights().is_none() || !oracle.is_relaxable() {
+            return Ok((0..starts).map(|k| Self::random_start(oracle, rng, k)).collect());
+        }
+        // One without, so that there is something to show for it if the search ends early.
+        let first = [Self::random_start(oracle, rng, 0)];
+        let first = oracle.from_each(&first, |oracle, x| self.follow(oracle, x).map(drop))?;
+        let mut points: Vec<Vec<f64>> = first.into_iter().map(|end| end.x).collect();
+        points.extend(oracle.on_relaxed(|oracle| self.follow_random(starts, oracle, rng))?);
+        let fresh = (2 * starts).div_ceil(REDUCTION).saturating_sub(points.len());
+        points.extend((0..fresh).map(|k| Self::random_start(oracle, rng, k + 1)));
+        Ok(points)
     }
 
     /// Starts of a run that follows no other optimiser.

@@ -12,8 +12,8 @@ use nalgebra::DVector;
 use super::bends::{Bends, Curvature};
 use super::subproblem::Region;
 use super::timed_subproblem::{Cuts, Model, Solution};
-use super::{Ending, SMALLEST, Scp, TAKE, WIDEN, next_radius};
-use crate::search::{ErrorSlopes, LinearLimits, Oracle, Stop, TimedWeights};
+use super::{Ending, NARROW, SMALLEST, Scp, TAKE, WIDEN, next_radius};
+use crate::search::{Bent, Fold, Oracle, Piece, PieceId, Stop, TimedParts, TimedWeights};
 
 /// Share of the settings' first weight that the error's weight begins with: it grows where it has to, step by step, and a
 /// larger one leads into poor valleys more often.
@@ -31,6 +31,12 @@ const GROWTH: f64 = 4.0;
 /// Below it an error is gone, as far as the weight is concerned.
 const GONE: f64 = 1e-3;
 
+/// Multipliers below this share of the error's weight are none.
+const NOTHING: f64 = 1e-6;
+
+/// A step that gains so many times what it promised was held back by folds that bend too much.
+const MORE: f64 = 1.2;
+
 /// How often the weight may fall.
 const FALLS: usize = 20;
 
@@ -40,7 +46,7 @@ pub(super) struct Search<'a, 'b> {
     oracle: &'a mut Oracle<'b>,
     weights: TimedWeights,
     x: DVector<f64>,
-    here: (LinearLimits, ErrorSlopes),
+    here: TimedParts,
     /// What the error weighs in the search.
     weight: f64,
     falls: usize,
@@ -48,6 +54,12 @@ pub(super) struct Search<'a, 'b> {
     /// The error's multiplier.
     nu: DVector<f64>,
     bends: Bends,
+    /// The multipliers of pieces that bend.
+    multipliers: Vec<(PieceId, f64)>,
+    /// How these bend at the present point, once that was asked for.
+    folds: Option<Vec<Fold>>,
+    /// What share of that is taken.
+    fold_share: f64,
     cuts: Cuts,
     last: Option<DVector<f64>>,
 }
@@ -60,14 +72,17 @@ impl<'a, 'b> Search<'a, 'b> {
         start: &[f64],
     ) -> Result<Self, Stop> {
         let here = oracle.timing(start)?;
-        let first = START * settings.first_weight * weights.time * here.0.time;
+        let first = START * settings.first_weight * weights.time * here.time();
         Ok(Self {
             weight: if first > 0.0 { weights.error.min(first) } else { weights.error },
             falls: 0,
             radius: settings.radius,
-            nu: DVector::zeros(here.1.value.len()),
+            nu: DVector::zeros(here.error.value.len()),
             x: DVector::from_column_slice(start),
             bends: Bends::default(),
+            multipliers: Vec::new(),
+            folds: None,
+            fold_share: 1.0,
             cuts: Cuts::default(),
             last: None,
             settings,
@@ -82,8 +97,8 @@ impl<'a, 'b> Search<'a, 'b> {
         TimedWeights { error: self.weight, ..self.weights }
     }
 
-    fn cost(&self, (limits, error): &(LinearLimits, ErrorSlopes)) -> f64 {
-        self.own_weights().cost(limits, error)
+    fn cost(&self, parts: &TimedParts) -> f64 {
+        self.own_weights().cost(parts)
     }
 
     /// Solves one subproblem and makes its step, or not.
@@ -106,13 +121,23 @@ impl<'a, 'b> Search<'a, 'b> {
         let kept = (here - self.cost(&there)) / promised;
         let reach = region.reach(&step.d);
         self.relax(&there, &step);
+        // Folds are the positive part of how pieces bend, and where the negative one counts, steps gain more than they promise.
+        if kept > MORE {
+            self.fold_share /= GROWTH;
+        } else if kept < NARROW {
+            self.fold_share = (GROWTH * self.fold_share).min(1.0);
+        }
         if kept >= TAKE {
             self.x += &step.d;
             self.bends.told = None;
+            self.folds = None;
             self.cuts.move_by(&step.d);
             self.here = there;
         }
         self.nu = step.nu;
+        let least = NOTHING * self.weight;
+        let pieces = step.multipliers.iter().filter(|(_, multiplier)| *multiplier > least);
+        self.multipliers = pieces.copied().collect();
         self.last = Some(step.d);
         self.radius = next_radius(self.radius, kept, reach);
         Ok(None)
@@ -126,7 +151,20 @@ impl<'a, 'b> Search<'a, 'b> {
         if self.bends.told.is_none() {
             self.bends.told = Some(self.oracle.bends(self.x.as_slice(), self.nu.len())?);
         }
-        Ok(self.bends.curvature(&self.nu))
+        if self.folds.is_none() {
+            let pieces = self.here.bent.pieces();
+            let continued =
+                |(id, multiplier): &(PieceId, f64)| Some((id.continued(&pieces)?.id, *multiplier));
+            let here: Vec<_> = self.multipliers.iter().filter_map(continued).collect();
+            let folds = if here.is_empty() {
+                Vec::new()
+            } else {
+                self.oracle.folds(self.x.as_slice(), &here)?
+            };
+            self.folds = Some(folds);
+        }
+        let folds = self.folds.as_deref().unwrap_or_default();
+        Ok(self.bends.curvature(&self.nu).folded(folds, self.fold_share))
     }
 
     /// A step, with a weight of the error that does not leave most of it.
@@ -136,8 +174,10 @@ impl<'a, 'b> Search<'a, 'b> {
         curvature: &Curvature,
     ) -> Result<Option<Solution>, Stop> {
         loop {
-            let error = self.here.1.value.clone();
-            let Some(step) = self.minimise(region, &error, curvature)? else { return Ok(None) };
+            let error = self.here.error.value.clone();
+            let bent = self.here.bent.clone();
+            let found = self.minimise(region, &error, &bent, curvature)?;
+            let Some(step) = found else { return Ok(None) };
             let is_bound = step.nu.norm() > BOUND * self.weight;
             if !is_bound || step.left <= LEFT * error.norm() || self.weight >= self.weights.error {
                 return Ok(Some(step));
@@ -147,10 +187,10 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Lets the weight fall where the error is gone.
-    fn relax(&mut self, there: &(LinearLimits, ErrorSlopes), step: &Solution) {
+    fn relax(&mut self, there: &TimedParts, step: &Solution) {
         let enough = GROWTH * step.nu.norm();
-        if there.1.value.norm() < GONE && enough < self.weight && self.falls < FALLS {
-            let least = self.weights.time * there.0.time / 10.0;
+        if there.error.value.norm() < GONE && enough < self.weight && self.falls < FALLS {
+            let least = self.weights.time * there.time() / 10.0;
             self.weight = enough.max(least).min(self.weight);
             self.falls += 1;
         }
@@ -175,13 +215,14 @@ impl<'a, 'b> Search<'a, 'b> {
         enough: f64,
         region: &Region,
         curvature: &Curvature,
-    ) -> Result<((LinearLimits, ErrorSlopes), Solution), Stop> {
+    ) -> Result<(TimedParts, Solution), Stop> {
         let there = self.attempt(&step)?;
         if self.cost(&there) <= enough {
             return Ok((there, step));
         }
-        let error = &there.1.value - &self.here.1.slopes * &step.d;
-        let Some(second) = self.minimise(region, &error, curvature)? else {
+        let error = &there.error.value - &self.here.error.slopes * &step.d;
+        let bent = corrected(&self.here.bent, &there.bent, &step.d);
+        let Some(second) = self.minimise(region, &error, &bent, curvature)? else {
             return Ok((there, step));
         };
         let corrected = self.attempt(&second)?;
@@ -189,9 +230,9 @@ impl<'a, 'b> Search<'a, 'b> {
         Ok(if is_better { (corrected, second) } else { (there, step) })
     }
 
-    fn attempt(&mut self, step: &Solution) -> Result<(LinearLimits, ErrorSlopes), Stop> {
+    fn attempt(&mut self, step: &Solution) -> Result<TimedParts, Stop> {
         let there = self.oracle.timing((&self.x + &step.d).as_slice())?;
-        self.bends.remember(&step.d, &there.1.slopes - &self.here.1.slopes);
+        self.bends.remember(&step.d, &there.error.slopes - &self.here.error.slopes);
         Ok(there)
     }
 
@@ -199,19 +240,39 @@ impl<'a, 'b> Search<'a, 'b> {
         &mut self,
         region: &Region,
         error: &DVector<f64>,
+        bent: &Bent,
         curvature: &Curvature,
     ) -> Result<Option<Solution>, Stop> {
         let model = Model {
             weights: self.own_weights(),
             here: self.cost(&self.here),
             x: &self.x,
-            limits: &self.here.0,
+            time: self.here.time(),
+            limits: &self.here.limits,
             error,
-            slopes: &self.here.1.slopes,
+            slopes: &self.here.error.slopes,
+            bent,
             curvature,
             region,
             last: self.last.as_ref(),
         };
         model.minimise(self.oracle, &mut self.cuts)
     }
+}
+
+/// Values of pieces for a second-order correction: what was found at `x + d`, taken back along the linearisation at `x`.
+fn corrected(here: &Bent, there: &Bent, d: &DVector<f64>) -> Bent {
+    let correct = |pieces: &mut [Piece], there: &[Piece]| {
+        for piece in pieces {
+            if let Some(found) = piece.id.continued(there) {
+                piece.value = found.value - piece.gradient.dot(d);
+            }
+        }
+    };
+    let mut bent = here.clone();
+    correct(&mut bent.durations, &there.durations);
+    for (term, there) in bent.terms.iter_mut().zip(&there.terms) {
+        correct(&mut term.pieces, &there.pieces);
+    }
+    bent
 }

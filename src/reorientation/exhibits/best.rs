@@ -3,7 +3,7 @@
 use crate::experiment::{Instance, Results, Run};
 use crate::reorientation::any::AnyReorientation;
 use crate::reorientation::motion::Motion;
-use crate::reorientation::subject::{DURATION, RESIDUAL, TaskSubject};
+use crate::reorientation::subject::{DURATION, LARGEST_TURN, RESIDUAL, TaskSubject};
 
 /// The best motion of an instance.
 #[derive(Debug)]
@@ -18,6 +18,8 @@ pub(in crate::reorientation) struct BestMotion<'a> {
     pub(in crate::reorientation) residual_deg: f64,
     /// Duration \[s\].
     pub(in crate::reorientation) duration: f64,
+    /// Largest turn of the base on the way \[°\]; NaN where it was not stored.
+    pub(in crate::reorientation) turn_deg: f64,
 }
 
 impl BestMotion<'_> {
@@ -40,6 +42,7 @@ pub(in crate::reorientation) fn best_motions<'a>(results: &Results<'a>) -> Vec<B
             coefficients: subject.coefficients(&results.space(run), &run.x)?,
             residual_deg: results.measure(run, RESIDUAL),
             duration: results.measure(run, DURATION),
+            turn_deg: results.measure(run, LARGEST_TURN),
         })
     };
     results.best_runs_with_points().into_iter().filter_map(motion).collect()

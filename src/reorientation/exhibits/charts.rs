@@ -1,7 +1,7 @@
 //! Charts of what a sweep over settings of the task comes to.
 
 use super::best::BestMotion;
-use super::pareto::{pareto, trades};
+use super::pareto::{Traded, pareto, trades};
 use super::sweeps::{MOST_PANELS, Swept, points, sweep, varies};
 use super::words::AT_GOAL_DEG;
 use crate::exhibit::words::list;
@@ -9,17 +9,26 @@ use crate::exhibit::{Chart, Finding};
 use crate::reorientation::best_known::BestKnown;
 
 /// The names that the charts may have.
-pub(super) const NAMES: [&str; 7] = [
+pub(super) const NAMES: [&str; 16] = [
     "weight-sweep",
     "rate-sweep",
     "acceleration-sweep",
     "jerk-sweep",
+    "turn-sweep",
+    "cone-sweep",
+    "base-rate-sweep",
+    "tool-speed-sweep",
+    "torque-sweep",
+    "clearance-sweep",
+    "largest-turn-weight-sweep",
+    "mean-turn-weight-sweep",
     "terms-sweep",
     "pieces-sweep",
     "pareto",
+    "turn-pareto",
 ];
 
-/// A chart for each setting that varies, and one of what the weight trades; and what is said of those that are left out.
+/// A chart for each setting that varies, and one of what each weight trades; and what is said of those that are left out.
 pub(super) fn charts(best: &[BestMotion<'_>]) -> (Vec<Chart>, Option<Finding>) {
     let bound = best.iter().filter_map(|m| BestKnown::of(m.problem)).find_map(|k| k.free_form_j);
     let (mut charts, mut left_out) = (Vec::new(), Vec::new());
@@ -47,15 +56,17 @@ pub(super) fn charts(best: &[BestMotion<'_>]) -> (Vec<Chart>, Option<Finding>) {
         Finding::new("Which charts are left out?", format!("{}: {why}.", list(names)))
     };
     let left_out = (!left_out.is_empty()).then(|| explain(&left_out));
-    charts.extend(pareto(&trades(best)).map(|figure| Chart {
-        name: "pareto".to_owned(),
-        title: "Residual against duration".to_owned(),
-        caption: "Residual against duration of the best motions of all weights; efficient are those that no other \
-                  weight's beats in one without being worse in the other."
-            .to_owned(),
-        table: "pareto".into(),
-        figure,
-    }));
+    let fronts = Traded::ALL.into_iter().filter_map(|traded| {
+        let figure = pareto(&trades(best, traded), traded)?;
+        Some(Chart {
+            name: traded.name().to_owned(),
+            title: format!("{} against duration", traded.title()),
+            caption: traded.caption(),
+            table: traded.name().into(),
+            figure,
+        })
+    });
+    charts.extend(fronts);
     (charts, left_out)
 }
 
@@ -82,6 +93,46 @@ fn texts_of(swept: Swept) -> (&'static str, &'static str, &'static str) {
             "Limit on jerks",
             "Duration of the best motion against the limit on jerks. The dotted line, where there is one, is the \
              law that holds while jerk alone limits the motion, from the lowest limit on at which the goal is reached.",
+        ),
+        Swept::TurnLimit => (
+            "turn-sweep",
+            "Limit on turns of the base",
+            "Duration of the best motion against the limit on turns of the base.",
+        ),
+        Swept::Cone => (
+            "cone-sweep",
+            "Angle of the cone",
+            "Duration of the best motion against the angle of the cone.",
+        ),
+        Swept::BaseRateLimit => (
+            "base-rate-sweep",
+            "Limit on rates of the base",
+            "Duration of the best motion against the limit on rates of the base.",
+        ),
+        Swept::ToolSpeedLimit => (
+            "tool-speed-sweep",
+            "Limit on speeds of the tool",
+            "Duration of the best motion against the limit on speeds of the tool.",
+        ),
+        Swept::TorqueLimit => (
+            "torque-sweep",
+            "Limit on torques",
+            "Duration of the best motion against the limit on torques.",
+        ),
+        Swept::Clearance => (
+            "clearance-sweep",
+            "Clearance",
+            "Duration of the best motion against the clearance asked for.",
+        ),
+        Swept::WeightLargestTurn => (
+            "largest-turn-weight-sweep",
+            "Weight of the largest turn",
+            "Largest turn of the base and duration of the best motion against the weight of the largest turn.",
+        ),
+        Swept::WeightMeanTurn => (
+            "mean-turn-weight-sweep",
+            "Weight of the mean turn",
+            "Largest turn of the base and duration of the best motion against the weight of the mean turn.",
         ),
         Swept::Terms => (
             "terms-sweep",

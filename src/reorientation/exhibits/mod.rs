@@ -8,6 +8,7 @@ mod joint_angles;
 mod motion_charts;
 mod motion_finding;
 mod motion_table;
+mod on_the_way;
 mod pareto;
 mod quality;
 mod scene;
@@ -31,6 +32,7 @@ use crate::exhibit::Exhibits;
 use crate::experiment::Results;
 use crate::reorientation::best_known::BestKnown;
 use best::{BestMotion, best_motions};
+use pareto::Traded;
 
 /// Most instances whose best motion a terminal is told of.
 const MOST_TOLD: usize = 24;
@@ -47,11 +49,11 @@ pub(super) fn exhibits(results: &Results<'_>) -> Exhibits {
         leading_charts,
         scenes: scene::scenes(&best),
         scenes_found: best.len(),
-        table_names: vec!["pareto", "motion"],
+        table_names: Traded::ALL.map(Traded::name).into_iter().chain(["motion"]).collect(),
         chart_names: charts::NAMES.into_iter().chain(MOTION_NAMES).collect(),
         ..Exhibits::default()
     };
-    exhibits.tables.extend(pareto::table(&best));
+    exhibits.tables.extend(Traded::ALL.iter().filter_map(|traded| pareto::table(&best, *traded)));
     // Costs of different instances do not compare, so of several there is no best of all to draw.
     if let (1, [motion]) = (results.instances.len(), &best[..]) {
         let sampled = motion.sample(motion_charts::SAMPLES);

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::base_attitude::base_attitude;
 use super::derivatives::derivatives;
 use super::joint_angles::joint_angles;
+use super::on_the_way::on_the_way;
 use super::snapshots::snapshots;
 use crate::exhibit::Chart;
 #[cfg(feature = "cli")]
@@ -17,8 +18,8 @@ use crate::task::Task;
 pub(crate) const SAMPLES: usize = 600;
 
 /// The names of the charts of a motion.
-pub(super) const MOTION_NAMES: [&str; 4] =
-    ["joint-angles", "joint-derivatives", "base-attitude", "snapshots"];
+pub(super) const MOTION_NAMES: [&str; 5] =
+    ["joint-angles", "joint-derivatives", "base-attitude", "on-the-way", "snapshots"];
 
 /// The paper's Figures 4, 5 and 6 for a motion, and snapshots; their table is `motion`.
 pub(super) fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
@@ -29,7 +30,7 @@ pub(super) fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
         table: "motion".into(),
         figure,
     };
-    vec![
+    let mut charts = vec![
         chart(
             "joint-angles",
             "Joint angles",
@@ -45,17 +46,30 @@ pub(super) fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
         chart(
             "base-attitude",
             "Attitude of the base",
-            "ZYX Euler angles of the base over time; dotted lines are the goal's.",
+            if task.path.base_turn.is_some() {
+                "ZYX Euler angles of the base over time, and its turn; dotted lines are the goal's angles and the turn's limit."
+            } else {
+                "ZYX Euler angles of the base over time; dotted lines are the goal's."
+            },
             base_attitude(motion, task),
         ),
+    ];
+    charts.extend(on_the_way(motion, task).map(|figure| {
+        let caption =
+            "What the task limits on the way, over time; dotted lines are the limits. A torque is that of the joint \
+             which is nearest to its limit, a clearance that of the nearest bodies.";
+        chart("on-the-way", "Limits on the way", caption, figure)
+    }));
+    charts.push(
         chart(
             "snapshots",
             "The arm along the motion",
             "The robot at equal distances of time, seen along one direction of inertial space; the dotted outline is the base in \
-             its goal attitude, the orange line the way of the tool. Body and panels are drawn for the eye: the model knows mass, inertia and mount.",
+             its goal attitude, the orange line the way of the tool. A base without shapes in its robot's file is drawn with two panels, for the eye only.",
             snapshots(motion, task),
         ),
-    ]
+    );
+    charts
 }
 
 /// Writes the charts of a motion into a folder.

@@ -6,7 +6,7 @@ use crate::exhibit::Table;
 use crate::reorientation::motion::Motion;
 
 /// One row per time and joint: time \[s\], joint, angle \[rad\] and its derivatives \[rad, s\], and the base's attitude as a
-/// quaternion that turns base axes into inertial axes.
+/// quaternion that turns base axes into inertial axes. Where joints slide, a column says in which unit each row's position is.
 pub(in crate::reorientation) fn motion_table(motion: &Motion) -> PolarsResult<Table> {
     let places = || {
         let joints = motion.joints.len();
@@ -19,7 +19,7 @@ pub(in crate::reorientation) fn motion_table(motion: &Motion) -> PolarsResult<Ta
         // nalgebra keeps x, y, z, w.
         places().map(|(i, _)| motion.base[i].coords[k]).collect()
     };
-    let frame = df!(
+    let mut frame = df!(
         "time" => places().map(|(i, _)| motion.time[i]).collect::<Vec<_>>(),
         "joint" => places().map(|(_, j)| motion.joints[j].name.as_str()).collect::<Vec<_>>(),
         "angle" => derivative(0),
@@ -31,7 +31,11 @@ pub(in crate::reorientation) fn motion_table(motion: &Motion) -> PolarsResult<Ta
         "base_y" => base(1),
         "base_z" => base(2),
     )?;
-    let caption = "The best motion: joint angles and derivatives in seconds and radians, and the quaternion that turns base \
-        axes into inertial axes.";
+    if motion.slides() {
+        let units: Vec<&str> = places().map(|(_, j)| motion.joints[j].kind.si_unit()).collect();
+        frame.insert_column(2, Column::new("unit".into(), units))?;
+    }
+    let caption = "The best motion: joint positions and derivatives in seconds and radians, or metres where a joint slides, and the \
+        quaternion that turns base axes into inertial axes.";
     Ok(Table::curve("motion", caption, frame))
 }

@@ -1,10 +1,10 @@
-//! What the weight of the base trades.
+//! What weights trade against time.
 
 use polars::prelude::df;
 
 use super::best::BestMotion;
-use super::sweep_finding::weight_varies;
 use super::sweeps::{MOST_CURVES, MOST_PANELS, duration, others};
+use super::words::AT_GOAL_DEG;
 use crate::exhibit::Table;
 use crate::figure::Figure;
 use crate::figure::axis::Axis;
@@ -13,6 +13,7 @@ use crate::figure::panel::{Panel, range};
 use crate::figure::sheet::Anchor;
 use crate::figure::style::{Marker, Stroke};
 use crate::reorientation::symbols::K_B;
+use crate::task::PathLimits;
 
 /// How far the text beside a point stands above it \[mm\].
 const ABOVE_FRONT: f64 = 1.9;
@@ -27,7 +28,7 @@ const MOST_NAMED: usize = 3;
 #[derive(Default)]
 struct Front {
     name: String,
-    /// Duration \[s\], residual \[°\] and weight.
+    /// Duration \[s\], what is traded \[°\] and weight.
     efficient: Vec<[f64; 3]>,
     beaten: Vec<[f64; 3]>,
 }
@@ -59,6 +60,106 @@ impl Front {
     }
 }
 
+/// What is traded against time, by a weight of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Traded {
+    /// The error of the base.
+    Residual,
+    /// The largest turn of the base on the way.
+    LargestTurn,
+}
+
+impl Traded {
+    pub(super) const ALL: [Self; 2] = [Self::Residual, Self::LargestTurn];
+
+    /// The name of chart and table.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Residual => "pareto",
+            Self::LargestTurn => "turn-pareto",
+        }
+    }
+
+    /// What it is called.
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Self::Residual => "Residual",
+            Self::LargestTurn => "Largest turn",
+        }
+    }
+
+    pub(super) fn caption(self) -> String {
+        let which = match self {
+            Self::Residual => "of the best motions of all weights",
+            Self::LargestTurn => "of the best motions that reach their goal",
+        };
+        format!(
+            "{} against duration {which}. A motion is efficient if no other weight's is better in one and at least as good \
+             in the other.",
+            self.title()
+        )
+    }
+
+    /// The setting that is its weight, and the symbol of that.
+    fn weight(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Residual => ("weight_base", K_B),
+            Self::LargestTurn => ("weight_largest_turn", "w"),
+        }
+    }
+
+    fn weight_of(self, motion: &BestMotion<'_>) -> f64 {
+        match self {
+            Self::Residual => motion.problem.task().base_weight,
+            Self::LargestTurn => motion.problem.task().path.turn_weights[0],
+        }
+    }
+
+    fn value_of(self, motion: &BestMotion<'_>) -> f64 {
+        match self {
+            Self::Residual => motion.residual_deg,
+            // Where nothing was asked of it, it was not stored; and it is stored from the start, whatever it is weighed from.
+            Self::LargestTurn => {
+                let task = motion.problem.task();
+                let turns = motion.sample(TURN_SAMPLES).base;
+                let turns = turns.iter().map(|base| task.path.turn_at(task, base));
+                turns.fold(0.0, f64::max).to_degrees()
+            }
+        }
+    }
+
+    /// Whether two motions are of the same task but for this weight.
+    fn differ(self, a: &BestMotion<'_>, b: &BestMotion<'_>) -> bool {
+        let (own, other) = (a.problem.task(), b.problem.task());
+        let unweighed = |path: &PathLimits| {
+            let [_, mean] = path.turn_weights;
+            PathLimits { turn_weights: [0.0, mean], ..path.clone() }
+        };
+        let same = match self {
+            Self::Residual => own.path == other.path,
+            Self::LargestTurn => {
+                own.base_weight == other.base_weight
+                    && unweighed(&own.path) == unweighed(&other.path)
+            }
+        };
+        same && self.weight_of(a) != self.weight_of(b)
+            && own.start == other.start
+            && own.goal == other.goal
+            && own.limits == other.limits
+            && a.problem.spec() == b.problem.spec()
+            && own.robot == other.robot
+    }
+
+    /// The motions that are compared, if the weight varies: a turn is of no interest where the goal is missed.
+    fn of<'a, 'b>(self, best: &'a [BestMotion<'b>]) -> Vec<&'a BestMotion<'b>> {
+        let counts =
+            |motion: &&BestMotion<'_>| self == Self::Residual || motion.residual_deg <= AT_GOAL_DEG;
+        let own: Vec<_> = best.iter().filter(counts).collect();
+        let varies = own.windows(2).any(|pair| self.weight_of(pair[0]) != self.weight_of(pair[1]));
+        if varies { own } else { Vec::new() }
+    }
+}
+
 /// The best motion of one weight.
 #[derive(Debug, Clone)]
 pub(super) struct Trade {
@@ -67,67 +168,54 @@ pub(super) struct Trade {
     pub(super) weight: f64,
     /// Duration \[s\].
     pub(super) duration: f64,
-    /// Error of the base \[°\].
-    pub(super) residual_deg: f64,
+    /// What is traded \[°\].
+    pub(super) value_deg: f64,
     /// Whether no other weight's motion is better in one and no worse in the other.
     pub(super) is_efficient: bool,
 }
 
-/// Residuals that differ by less are the same, in degrees: searches end with some 10⁻⁶.
+/// Angles that differ by less are the same, in degrees: searches end with residuals of some 10⁻⁶, and turns are sampled.
 const SAME_DEG: f64 = 1e-5;
+const SAME_TURN_DEG: f64 = 1e-3;
+/// Intervals at which the largest turn is sampled.
+const TURN_SAMPLES: usize = 2_000;
 /// Durations that differ by a smaller share are the same.
 const SAME_DURATION: f64 = 1e-6;
 
 /// The best motions as what their weights trade; none unless the weight varies.
-pub(super) fn trades(best: &[BestMotion<'_>]) -> Vec<Trade> {
-    if !weight_varies(best) {
-        return Vec::new();
-    }
-    let trade = |motion: &BestMotion<'_>| Trade {
-        others: others(motion.instance, &["weight_base"]).join(", "),
-        weight: motion.problem.task().base_weight,
-        duration: motion.duration,
-        residual_deg: motion.residual_deg,
-        is_efficient: !best.iter().any(|o| same_but_for_weight(o, motion) && dominates(o, motion)),
+pub(super) fn trades(best: &[BestMotion<'_>], traded: Traded) -> Vec<Trade> {
+    let same = if traded == Traded::Residual { SAME_DEG } else { SAME_TURN_DEG };
+    let own = |motion| (motion, traded.value_of(motion));
+    let motions: Vec<(&BestMotion<'_>, f64)> = traded.of(best).into_iter().map(own).collect();
+    let dominates = |(a, own): &(&BestMotion<'_>, f64), (b, other): &(&BestMotion<'_>, f64)| {
+        let no_worse = *own <= other + same && a.duration <= b.duration * (1.0 + SAME_DURATION);
+        let better = *own < other - same || a.duration < b.duration * (1.0 - SAME_DURATION);
+        traded.differ(a, b) && no_worse && better
     };
-    best.iter().map(trade).collect()
-}
-
-fn same_but_for_weight(a: &BestMotion<'_>, b: &BestMotion<'_>) -> bool {
-    let (own, other) = (a.problem.task(), b.problem.task());
-    own.base_weight != other.base_weight
-        && own.start == other.start
-        && own.goal == other.goal
-        && own.limits == other.limits
-        && a.problem.spec() == b.problem.spec()
-        && own.robot == other.robot
-}
-
-fn dominates(a: &BestMotion<'_>, b: &BestMotion<'_>) -> bool {
-    let no_worse = a.residual_deg <= b.residual_deg + SAME_DEG
-        && a.duration <= b.duration * (1.0 + SAME_DURATION);
-    let better = a.residual_deg < b.residual_deg - SAME_DEG
-        || a.duration < b.duration * (1.0 - SAME_DURATION);
-    no_worse && better
+    let trade = |own: &(&BestMotion<'_>, f64)| Trade {
+        others: others(own.0.instance, &[traded.weight().0]).join(", "),
+        weight: traded.weight_of(own.0),
+        duration: own.0.duration,
+        value_deg: own.1,
+        is_efficient: !motions.iter().any(|other| dominates(other, own)),
+    };
+    motions.iter().map(trade).collect()
 }
 
 /// The table of the trades; none where there are none.
-pub(super) fn table(best: &[BestMotion<'_>]) -> Option<Table> {
-    let trades = trades(best);
+pub(super) fn table(best: &[BestMotion<'_>], traded: Traded) -> Option<Table> {
+    let (motions, trades) = (traded.of(best), trades(best, traded));
+    let value = format!("{} [°]", traded.title().to_lowercase());
+    let numbers = |of: fn(&Trade) -> f64| trades.iter().map(of).collect::<Vec<_>>();
     let frame = df!(
-        "instance" => best.iter().map(|motion| motion.instance.label.as_str()).collect::<Vec<_>>(),
-        "weight_base" => best.iter().map(|m| m.problem.task().base_weight).collect::<Vec<_>>(),
-        "residual [°]" => best.iter().map(|motion| motion.residual_deg).collect::<Vec<_>>(),
-        "t_f [s]" => best.iter().map(|motion| motion.duration).collect::<Vec<_>>(),
-        "efficient" => best
-            .iter()
-            .zip(&trades)
-            .map(|(_, trade)| trade.is_efficient)
-            .collect::<Vec<_>>(),
+        "instance" => motions.iter().map(|motion| motion.instance.label.as_str()).collect::<Vec<_>>(),
+        traded.weight().0 => numbers(|trade| trade.weight),
+        value.as_str() => numbers(|trade| trade.value_deg),
+        "t_f [s]" => numbers(|trade| trade.duration),
+        "efficient" => trades.iter().map(|trade| trade.is_efficient).collect::<Vec<_>>(),
     );
-    let caption = "Residual against duration of the best motions; efficient are those that no other weight's beats in \
-        one without being worse in the other.";
-    Some(Table::of("pareto", caption, frame.ok().filter(|_| !trades.is_empty())?))
+    let frame = frame.ok().filter(|_| !trades.is_empty())?;
+    Some(Table::of(traded.name(), traded.caption(), frame))
 }
 
 /// The fronts of the trades, each in the order of its durations.
@@ -141,7 +229,7 @@ fn fronts(trades: &[Trade]) -> Vec<Front> {
         });
         let front = &mut fronts[place];
         let motions = if trade.is_efficient { &mut front.efficient } else { &mut front.beaten };
-        motions.push([trade.duration, trade.residual_deg, trade.weight]);
+        motions.push([trade.duration, trade.value_deg, trade.weight]);
     }
     for front in &mut fronts {
         front.efficient.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -149,17 +237,17 @@ fn fronts(trades: &[Trade]) -> Vec<Front> {
     fronts
 }
 
-/// Residual against duration of the best motions of all weights, a front for each task but for its weight; filled points
+/// What is traded against duration, of the best motions of all weights: a front for each task but for its weight; filled points
 /// are efficient. Of a single front weights stand beside points where there is room; more than a few have panels of their
 /// own. None where there are no trades or too many fronts.
-pub(super) fn pareto(trades: &[Trade]) -> Option<Figure> {
+pub(super) fn pareto(trades: &[Trade], traded: Traded) -> Option<Figure> {
     let fronts = fronts(trades);
     if fronts.is_empty() || fronts.len() > MOST_PANELS {
         return None;
     }
     let values = |k: usize| range(fronts.iter().flat_map(Front::all).map(|motion| motion[k]), 0.0);
     let x = Axis::linear(&duration(), values(0), 0.12);
-    let y = Axis::linear("residual [°]", values(1), 0.08);
+    let y = Axis::linear(&format!("{} [°]", traded.title().to_lowercase()), values(1), 0.08);
     let alone = ["efficient", "beaten by another weight"];
     let stroke = |i: usize| Stroke::of(i).with_marker(Marker::ALL[i % Marker::ALL.len()]);
     if fronts.len() > MOST_CURVES {
@@ -179,13 +267,13 @@ pub(super) fn pareto(trades: &[Trade]) -> Option<Figure> {
     }
     if let [front] = &fronts[..] {
         let all: Vec<[f64; 3]> = front.all().copied().collect();
-        marks.extend(labels(&all, &x, &y));
+        marks.extend(labels(&all, traded.weight().1, &x, &y));
     }
     Some(Figure::column(vec![Panel::new(x, y, marks)], 44.0))
 }
 
 /// The weights beside points that lie on each other, where no other point is in the way.
-fn labels(motions: &[[f64; 3]], x: &Axis, y: &Axis) -> Vec<Mark> {
+fn labels(motions: &[[f64; 3]], symbol: &str, x: &Axis, y: &Axis) -> Vec<Mark> {
     let places: Vec<[f64; 2]> = motions.iter().map(|m| [x.place(m[0]), y.place(m[1])]).collect();
     let mut weights: Vec<f64> = motions.iter().map(|motion| motion[2]).collect();
     weights.sort_by(f64::total_cmp);
@@ -201,7 +289,12 @@ fn labels(motions: &[[f64; 3]], x: &Axis, y: &Axis) -> Vec<Mark> {
         if places.iter().all(is_free) {
             let anchor = if is_right { Anchor::Right } else { Anchor::Left };
             let at = [motions[first][0], motions[first][1]];
-            marks.push(Mark::Label { at, text: told(&own, &weights), anchor, raised: ABOVE_FRONT });
+            marks.push(Mark::Label {
+                at,
+                text: told(symbol, &own, &weights),
+                anchor,
+                raised: ABOVE_FRONT,
+            });
         }
     }
     marks
@@ -226,15 +319,15 @@ fn clusters(places: &[[f64; 2]], motions: &[[f64; 3]]) -> Vec<(usize, Vec<f64>)>
 }
 
 /// Some of all weights: one by one, as a range where they are all that lie in it, or how many they are.
-fn told(own: &[f64], all: &[f64]) -> String {
+fn told(symbol: &str, own: &[f64], all: &[f64]) -> String {
     let [low, high] = [own[0], own[own.len() - 1]];
     let between = all.iter().filter(|weight| (low..=high).contains(*weight)).count();
     if own.len() > 2 && between == own.len() {
-        return format!("{K_B} = {low} to {high}");
+        return format!("{symbol} = {low} to {high}");
     }
     if own.len() > MOST_NAMED {
         return format!("{} weights", own.len());
     }
     let own: Vec<String> = own.iter().map(ToString::to_string).collect();
-    format!("{K_B} = {}", own.join(", "))
+    format!("{symbol} = {}", own.join(", "))
 }

@@ -7,7 +7,7 @@ use crate::figure::axis::Axis;
 use crate::figure::marks::{Line, Mark, Marked};
 use crate::figure::panel::Panel;
 use crate::figure::style::{COLOURS, DASHES, GRID, INK, Marker, PAPER, Stroke, Width, mix};
-use crate::posture::{Posture, Satellite};
+use crate::posture::{BaseBox, Branches, Posture, Satellite};
 use crate::reorientation::motion::Motion;
 use crate::task::Task;
 
@@ -43,41 +43,44 @@ struct Snapshot {
     time: f64,
     attitude: UnitQuaternion<f64>,
     base: Vector3<f64>,
-    /// Joints and tool.
-    arm: Vec<Vector3<f64>>,
+    tool: Vector3<f64>,
+    /// The ends of each link.
+    links: Vec<[Vector3<f64>; 2]>,
 }
 
 impl Snapshot {
-    fn of(task: &Task, motion: &Motion, i: usize) -> Self {
+    fn of(task: &Task, branches: &Branches, motion: &Motion, i: usize) -> Self {
         let angles: Vec<f64> = motion.joints.iter().map(|j| j.derivatives[i][0]).collect();
         let attitude = motion.base[i];
-        let posture = Posture::of(&task.robot, &angles, attitude);
+        let posture = Posture::with(branches, &task.robot, &angles, attitude);
         let base = Vector3::from(posture.position);
-        let arm = posture.origins.iter().map(|o| base + attitude * Vector3::from(*o)).collect();
-        Self { time: motion.time[i], attitude, base, arm }
+        let place = |place: &[f64; 3]| base + attitude * Vector3::from(*place);
+        let origins: Vec<Vector3<f64>> = posture.origins.iter().map(place).collect();
+        let carried = origins.iter().zip(&branches.carriers);
+        let carried = carried.filter_map(|(end, carrier)| Some([origins[(*carrier)?], *end]));
+        let tips = posture.tips.iter().map(place).zip(&branches.tip_carriers);
+        let tips = tips.map(|(end, carrier)| [origins[*carrier], end]);
+        Self {
+            time: motion.time[i],
+            attitude,
+            base,
+            tool: origins.last().copied().unwrap_or(base),
+            links: carried.chain(tips).collect(),
+        }
     }
-}
-
-/// Four corners of one of a box's six faces: the axis it is across, on which side.
-fn face(half: [f64; 3], axis: usize, side: f64) -> [Vector3<f64>; 4] {
-    let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[u, v]| {
-        let mut corner = Vector3::zeros();
-        (corner[axis], corner[a], corner[b]) = (side * half[axis], u * half[a], v * half[b]);
-        corner
-    })
 }
 
 /// The robot at equal distances of time, seen along one direction. The base's goal attitude is dotted, the tool's way is
 /// drawn up to each time.
 pub(super) fn snapshots(motion: &Motion, task: &Task) -> Figure {
     let view = View::new();
-    let satellite = Satellite::of(&task.robot);
+    let blocks = Satellite::of(&task.robot).blocks();
     let last = motion.time.len().saturating_sub(1);
-    let all: Vec<Snapshot> = (0..=last).map(|i| Snapshot::of(task, motion, i)).collect();
+    let branches = Branches::of(&task.robot);
+    let all: Vec<Snapshot> = (0..=last).map(|i| Snapshot::of(task, &branches, motion, i)).collect();
     let chosen: Vec<usize> = (0..SNAPSHOTS).map(|k| k * last / (SNAPSHOTS - 1)).collect();
     let drawings: Vec<Vec<Mark>> =
-        chosen.iter().map(|&i| drawing(&view, &satellite, task, &all[..=i])).collect();
+        chosen.iter().map(|&i| drawing(&view, &blocks, task, &all[..=i])).collect();
     let (middle, [half_x, half_y]) = seen(&drawings);
     let width = (Width::Column.mm() - ACROSS as f64) / ACROSS as f64;
     let height = width * (half_y / half_x).clamp(0.6, 1.5);
@@ -108,57 +111,64 @@ fn seen(drawings: &[Vec<Mark>]) -> ([f64; 2], [f64; 2]) {
 }
 
 /// The last of some snapshots, with the tool's way through all.
-fn drawing(view: &View, satellite: &Satellite, task: &Task, way: &[Snapshot]) -> Vec<Mark> {
-    let Some(now) = way.last() else { return Vec::new() };
+fn drawing(view: &View, blocks: &[BaseBox], task: &Task, way: &[Snapshot]) -> Vec<Mark> {
+    let (Some(now), Some((body, others))) = (way.last(), blocks.split_first()) else {
+        return Vec::new();
+    };
     let place = |corner: &Vector3<f64>| view.of(&(now.base + now.attitude * corner));
     let is_near = |place: &Vector3<f64>| view.towards.dot(&(place - now.base)) > 0.0;
     let (mut behind, mut before) = (Vec::new(), Vec::new());
-    let tool: Vec<Vector3<f64>> = way.iter().filter_map(|s| s.arm.last().copied()).collect();
+    let tool: Vec<Vector3<f64>> = way.iter().map(|s| s.tool).collect();
     for piece in tool.chunk_by(|a, b| is_near(a) == is_near(b)) {
         let marks = if is_near(&piece[0]) { &mut before } else { &mut behind };
         let points = piece.iter().map(|place| view.of(place)).collect();
         marks.push(Mark::Line(Line::new("", Stroke::plain(COLOURS[1], 0.25), points)));
     }
-    for link in now.arm.windows(2) {
+    for link in &now.links {
         let ends = [view.of(&link[0]), view.of(&link[1])];
         let stroke = Stroke::plain(INK, 0.9).with_marker(Marker::Circle);
         let marks = if is_near(&(0.5 * (link[0] + link[1]))) { &mut before } else { &mut behind };
         marks.push(Mark::Line(Line::new("", stroke, ends.to_vec())));
     }
-    for panel in &satellite.panels {
-        let panel = panel.corners().map(Vector3::from);
-        let middle = now.base + now.attitude * (0.25 * panel.iter().sum::<Vector3<f64>>());
-        let corners = panel.iter().map(place).collect();
-        let marks = if is_near(&middle) { &mut before } else { &mut behind };
-        marks.insert(0, Mark::Area { colour: mix(COLOURS[0], PAPER, 0.55), corners });
-    }
-    let mut marks = behind;
-    for axis in 0..3 {
-        for side in [-1.0, 1.0] {
-            let mut normal = Vector3::zeros();
-            normal[axis] = side;
-            if view.towards.dot(&(now.attitude * normal)) > 0.0 {
-                let corners = face(satellite.half, axis, side).iter().map(place).collect();
-                marks.push(Mark::Area {
-                    colour: mix(GRID, INK, 0.02 + 0.14 * axis as f64),
-                    corners,
-                });
-            }
+    // Faces that look this way, and their edges.
+    let faces = |block: &BaseBox| -> Vec<(usize, Vec<[f64; 2]>)> {
+        let all = (0..3).flat_map(|edge| [-1.0, 1.0].map(|side| (edge, side)));
+        let seen = all.filter(|&(edge, side)| {
+            view.towards.dot(&(now.attitude * block.normal(edge, side))) > 0.0
+        });
+        seen.map(|(edge, side)| (edge, block.face(edge, side).iter().map(place).collect()))
+            .collect()
+    };
+    let shade = |edge: usize| mix(GRID, INK, 0.02 + 0.14 * edge as f64);
+    for block in others {
+        let marks = if is_near(&(now.base + now.attitude * block.centre)) {
+            &mut before
+        } else {
+            &mut behind
+        };
+        for (edge, corners) in faces(block) {
+            let is_flat = block.is_flat();
+            let colour = if is_flat { mix(COLOURS[0], PAPER, 0.55) } else { shade(edge) };
+            marks.insert(0, Mark::Area { colour, corners });
         }
     }
-    marks.extend(goal(view, satellite, task, now));
+    let mut marks = behind;
+    for (edge, corners) in faces(body) {
+        marks.push(Mark::Area { colour: shade(edge), corners });
+    }
+    marks.extend(goal(view, body, task, now));
     marks.extend(before);
     marks
 }
 
-/// The edges of the base's box in its goal attitude, where the base is now.
-fn goal(view: &View, satellite: &Satellite, task: &Task, now: &Snapshot) -> Vec<Mark> {
+/// The edges of the base's body in its goal attitude, where the base is now.
+fn goal(view: &View, body: &BaseBox, task: &Task, now: &Snapshot) -> Vec<Mark> {
     let place = |corner: &Vector3<f64>| view.of(&(now.base + task.goal.base * corner));
     let edges = [-1.0, 1.0].into_iter().flat_map(|side| {
-        let corners = face(satellite.half, 2, side);
+        let corners = body.face(2, side);
         (0..4).map(move |k| [corners[k], corners[(k + 1) % 4]])
     });
-    let uprights = face(satellite.half, 2, -1.0).into_iter().zip(face(satellite.half, 2, 1.0));
+    let uprights = body.face(2, -1.0).into_iter().zip(body.face(2, 1.0));
     let edges = edges.chain(uprights.map(|(low, high)| [low, high]));
     let stroke = Stroke { dashes: DASHES[2], ..Stroke::plain(INK, 0.12) };
     let edge = |ends: [Vector3<f64>; 2]| Line {

@@ -30,12 +30,12 @@ pub(super) fn finding(best: &[BestMotion<'_>]) -> Option<Finding> {
     Some(Finding::new("What does the sweep say?", told))
 }
 
-/// The range of the best cost; empty where the weight of the base varies, as that is a part of the cost.
+/// The range of the best cost; empty where weights vary, as these are a part of the cost.
 fn costs(best: &[BestMotion<'_>], stops: &[Setting<'_>]) -> Option<String> {
     let costs = || stops.iter().map(|stop| (stop.group, stop.median(|motion| motion.run.cost)));
     let (least_at, least) = costs().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let (most_at, most) = costs().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    if weight_varies(best) {
+    if weights_vary(best) {
         return Some(String::new());
     }
     let (low, high) = (number(least), number(most));
@@ -63,10 +63,13 @@ fn motions(stops: &[Setting<'_>]) -> String {
     format!("{durations} and the residual {residual}")
 }
 
-/// Whether the weight of the base differs between the motions' tasks.
-pub(super) fn weight_varies(best: &[BestMotion<'_>]) -> bool {
-    let weight = |motion: &BestMotion<'_>| motion.problem.task().base_weight;
-    best.windows(2).any(|pair| weight(&pair[0]) != weight(&pair[1]))
+/// Whether the weights of the base or of its turns differ between the motions' tasks.
+fn weights_vary(best: &[BestMotion<'_>]) -> bool {
+    let weights = |motion: &BestMotion<'_>| {
+        let task = motion.problem.task();
+        (task.base_weight, task.path.turn_weights)
+    };
+    best.windows(2).any(|pair| weights(&pair[0]) != weights(&pair[1]))
 }
 
 /// The groups with a run that found something, in the plan's order.

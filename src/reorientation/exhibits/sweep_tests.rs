@@ -13,6 +13,7 @@ fn points(setting: &[f64]) -> Vec<Point> {
         cost: 0.6 + 0.3 / value,
         residual_deg: if value < 0.15 { 29.0 } else { 0.0 },
         duration: 7.8 * (value / 80.0).powf(-1.0 / 3.0).max(0.6),
+        turn_deg: 30.0 - 4.0 * value,
     };
     setting.iter().map(point).collect()
 }
@@ -33,6 +34,7 @@ pub(super) fn missed(others: &[String], pose: &str, times: f64) -> Vec<Point> {
         cost: duration / 10.0,
         residual_deg,
         duration: times * duration,
+        turn_deg: f64::NAN,
     };
     MISSED.map(point).to_vec()
 }

@@ -24,6 +24,22 @@ pub(super) enum Swept {
     AccelerationLimit,
     /// Limit on jerks.
     JerkLimit,
+    /// Limit on the base's turn.
+    TurnLimit,
+    /// Angle of the one cone.
+    Cone,
+    /// Limit on the base's rate.
+    BaseRateLimit,
+    /// Limit on the tool's speed.
+    ToolSpeedLimit,
+    /// Limit on torques.
+    TorqueLimit,
+    /// Least distance.
+    Clearance,
+    /// Weight of the largest turn.
+    WeightLargestTurn,
+    /// Weight of the mean turn.
+    WeightMeanTurn,
     /// Free coefficients per joint.
     Terms,
     /// Pieces of a spline.
@@ -39,11 +55,19 @@ pub(super) const MOST_PANELS: usize = 24;
 
 impl Swept {
     /// All of them.
-    pub(super) const ALL: [Self; 6] = [
+    pub(super) const ALL: [Self; 14] = [
         Self::WeightBase,
         Self::RateLimit,
         Self::AccelerationLimit,
         Self::JerkLimit,
+        Self::TurnLimit,
+        Self::Cone,
+        Self::BaseRateLimit,
+        Self::ToolSpeedLimit,
+        Self::TorqueLimit,
+        Self::Clearance,
+        Self::WeightLargestTurn,
+        Self::WeightMeanTurn,
         Self::Terms,
         Self::Pieces,
     ];
@@ -55,6 +79,14 @@ impl Swept {
             Self::RateLimit => "rate_limit_deg_s",
             Self::AccelerationLimit => "acceleration_limit_deg_s2",
             Self::JerkLimit => "jerk_limit_deg_s3",
+            Self::TurnLimit => "base_turn_deg",
+            Self::Cone => "base_cone_deg",
+            Self::BaseRateLimit => "base_rate_deg_s",
+            Self::ToolSpeedLimit => "tool_speed_m_s",
+            Self::TorqueLimit => "torque_n_m",
+            Self::Clearance => "clearance_m",
+            Self::WeightLargestTurn => "weight_largest_turn",
+            Self::WeightMeanTurn => "weight_mean_turn",
             Self::Terms => "terms",
             Self::Pieces => "pieces",
         }
@@ -66,6 +98,14 @@ impl Swept {
             Self::RateLimit => "limit on rates [°/s]".to_owned(),
             Self::AccelerationLimit => "limit on accelerations [°/s²]".to_owned(),
             Self::JerkLimit => "limit on jerks [°/s³]".to_owned(),
+            Self::TurnLimit => "limit on turns of the base [°]".to_owned(),
+            Self::Cone => "angle of the cone [°]".to_owned(),
+            Self::BaseRateLimit => "limit on rates of the base [°/s]".to_owned(),
+            Self::ToolSpeedLimit => "limit on speeds of the tool [m/s]".to_owned(),
+            Self::TorqueLimit => "limit on torques [N·m]".to_owned(),
+            Self::Clearance => "clearance asked for [m]".to_owned(),
+            Self::WeightLargestTurn => "weight of the largest turn [1/°]".to_owned(),
+            Self::WeightMeanTurn => "weight of the mean turn [1/°]".to_owned(),
             Self::Terms => "free coefficients per joint".to_owned(),
             Self::Pieces => "pieces".to_owned(),
         }
@@ -85,6 +125,8 @@ pub(super) struct Point {
     pub(super) residual_deg: f64,
     /// Duration \[s\].
     pub(super) duration: f64,
+    /// Largest turn of the base \[°\]; NaN where it was not stored.
+    pub(super) turn_deg: f64,
 }
 
 impl Point {
@@ -108,6 +150,7 @@ pub(super) fn points(best: &[BestMotion<'_>], swept: Swept) -> Vec<Point> {
             cost: motion.run.cost,
             residual_deg: motion.residual_deg,
             duration: motion.duration,
+            turn_deg: motion.turn_deg,
         };
         [point.cost, point.residual_deg, point.duration]
             .iter()
@@ -195,6 +238,7 @@ enum Ordinate {
     Cost,
     Residual,
     Duration,
+    Turn,
 }
 
 impl Ordinate {
@@ -203,6 +247,7 @@ impl Ordinate {
             Self::Cost => point.cost,
             Self::Residual => point.residual_deg,
             Self::Duration => point.duration,
+            Self::Turn => point.turn_deg,
         }
     }
 
@@ -211,6 +256,7 @@ impl Ordinate {
             Self::Cost => "best J".to_owned(),
             Self::Residual => "residual [°]".to_owned(),
             Self::Duration => duration(),
+            Self::Turn => "largest turn [°]".to_owned(),
         }
     }
 }
@@ -243,6 +289,11 @@ pub(super) fn sweep(points: &[Point], swept: Swept, bound: Option<f64>) -> Optio
     let ordinates: &[Ordinate] = match swept {
         Swept::WeightBase => &[Ordinate::Residual, Ordinate::Duration],
         Swept::Terms | Swept::Pieces => &[Ordinate::Cost],
+        Swept::WeightLargestTurn | Swept::WeightMeanTurn
+            if points.iter().all(|point| point.turn_deg.is_finite()) =>
+        {
+            &[Ordinate::Turn, Ordinate::Duration]
+        }
         _ if points.iter().any(Point::misses) => &[Ordinate::Duration, Ordinate::Residual],
         _ => &[Ordinate::Duration],
     };
@@ -329,7 +380,7 @@ impl Drawing<'_> {
             // Where the weight is too small the motions are others than where it is large enough.
             (_, Swept::WeightBase) => a.misses() == b.misses(),
             (Ordinate::Residual, _) => false,
-            (Ordinate::Duration, _) => !a.misses() && !b.misses(),
+            (Ordinate::Duration | Ordinate::Turn, _) => !a.misses() && !b.misses(),
         };
         let place = |point: &Point| [point.setting, ordinate.of(point)];
         let mut marks = Vec::new();
@@ -378,7 +429,7 @@ fn median_line(
         [point.setting, median(values)]
     });
     let throughout = match ordinate {
-        Ordinate::Duration => " that reach the goal throughout",
+        Ordinate::Duration | Ordinate::Turn => " that reach the goal throughout",
         _ => "",
     };
     let before = if name.is_empty() { String::new() } else { format!("{name}: ") };

@@ -3,12 +3,13 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::base_attitude::base_attitude;
 use super::derivatives::derivatives;
 use super::joint_angles::joint_angles;
-use super::pareto::{Trade, pareto};
+use super::on_the_way::on_the_way;
+use super::pareto::{Trade, Traded, pareto};
 use super::snapshots::snapshots;
 use super::sweep_tests::{missed, poses, swept, two_settings};
 use super::sweeps::{Swept, sweep as sweep_chart};
@@ -21,12 +22,15 @@ use crate::experiment::{
 use crate::figure::Figure;
 use crate::figure::stored_pictures::check;
 use crate::functions::Functions;
+use crate::input::Document;
 use crate::lanes::Width;
 use crate::reorientation::best_known::BestKnown;
 use crate::reorientation::kind::ReorientationTask;
+use crate::reorientation::limited::{limited, nearest};
 use crate::reorientation::motion::{JointMotion, Motion};
 use crate::reorientation::settings::TaskFile;
 use crate::reorientation::subject::{DURATION, RESIDUAL, TaskSubject};
+use crate::robot::JointKind;
 use crate::search::Watch;
 
 /// What the tests' experiments are on.
@@ -253,14 +257,14 @@ fn front() -> Figure {
         (0.5, 7.0, 14.0, false),
         (0.9, 7.8, 0.0, true),
     ];
-    let trade = |(weight, duration, residual_deg, is_efficient)| Trade {
+    let trade = |(weight, duration, value_deg, is_efficient)| Trade {
         others: String::new(),
         weight,
         duration,
-        residual_deg,
+        value_deg,
         is_efficient,
     };
-    pareto(&motions.map(trade)).unwrap()
+    pareto(&motions.map(trade), Traded::Residual).unwrap()
 }
 
 /// More fronts than a panel can hold have panels of their own.
@@ -270,17 +274,18 @@ fn many_fronts_are_drawn() {
         others: format!("jerk ≤ {} °/s³", 20 * (i + 1)),
         weight,
         duration: 5.0 + weight,
-        residual_deg: 20.0 - 20.0 * weight,
+        value_deg: 20.0 - 20.0 * weight,
         is_efficient: true,
     };
     let trades: Vec<Trade> =
         (0..10).flat_map(|i| [0.1, 0.9].map(|weight| (i, weight))).map(trade).collect();
-    assert_eq!(pareto(&trades).unwrap().panels.len(), 10);
+    assert_eq!(pareto(&trades, Traded::LargestTurn).unwrap().panels.len(), 10);
 }
 
 fn motion() -> Motion {
     let time: Vec<f64> = (0..=200).map(|i| f64::from(i) * 0.05).collect();
     let joint = |i: usize| JointMotion {
+        kind: JointKind::Revolute,
         name: format!("joint{}", i + 1),
         derivatives: time
             .iter()
@@ -311,6 +316,42 @@ fn charts() -> Vec<(&'static str, Figure)> {
         ("base-attitude", base_attitude(&motion(), task)),
         ("snapshots", snapshots(&Motion::sample(&problem, &[0.1; 12], 8.0, 100), task)),
     ]
+}
+
+/// The task with limits on the way has a panel for each; the largest turn of a base that turns about one axis is known.
+#[test]
+fn limits_on_the_way_have_a_panel_each() {
+    let text = "[task.limits]\nbase_turn_deg = 30\nbase_turn_from = 'start'\nbase_rate_deg_s = 4\ntorque_n_m = 9\nclearance_m = 0.01\n";
+    let document = Document::embedded("task.toml", text);
+    let (problem, _) = TaskFile::read(&document).unwrap().build(&document).unwrap();
+    let task = problem.task();
+    let motion = Motion::sample(&problem, &[0.1; 12], 8.0, 100);
+    let limited = limited(task, &motion);
+    let limits: Vec<(&str, f64)> =
+        limited.iter().map(|one| (one.name.as_str(), one.limit)).collect();
+    let names = ["turn of the base", "rate of the base", "torque", "clearance"];
+    for ((name, limit), (expected, at)) in
+        limits.iter().zip(names.into_iter().zip([30.0, 4.0, 1.0, 0.01]))
+    {
+        assert_eq!(*name, expected);
+        assert!((limit - at).abs() < 1e-12, "{limit}");
+    }
+    let largest = limited[0].values.iter().fold(0.0, |most: f64, turn| most.max(*turn));
+    let turns = motion.base.iter().map(|base| motion.base[0].angle_to(base).to_degrees());
+    assert!((largest - turns.fold(0.0, f64::max)).abs() < 1e-9, "{largest}");
+    // At rest at both ends.
+    let rates = &limited[1].values;
+    assert!(rates[0] < 1e-9 && rates[100] < 1e-9, "{rates:?}");
+    assert_eq!(on_the_way(&motion, task).unwrap().panels.len(), 4);
+    let points = nearest(task, &motion).unwrap();
+    for (distance, [one, other]) in limited[3].values.iter().zip(points) {
+        let apart = (Vector3::from(one) - Vector3::from(other)).norm();
+        assert!((apart - distance.abs()).abs() < 1e-9, "{apart} {distance}");
+    }
+    let document = TaskFile::paper();
+    let (problem, _) = TaskFile::read(&document).unwrap().build(&document).unwrap();
+    let motion = Motion::sample(&problem, &[0.1; 12], 8.0, 100);
+    assert!(on_the_way(&motion, problem.task()).is_none());
 }
 
 #[test]

@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 
 use super::ExportError;
-use crate::reorientation::motion::Motion;
+use crate::reorientation::motion::{JointMotion, Motion};
 
 /// The motion as YAML; the message has no place for jerks and for the base.
 ///
 /// Texts are quoted and numbers have a point, so that readers of YAML 1.1, which take `on` for a truth value and `1e-7` for a
-/// text, read them as they are.
+/// text, read them as they are. The message's clock counts nanoseconds, and all values are those of its times: with those of
+/// the motion's own times, quintics through the points have jerks that are wrong by a hundredth of usual limits.
 pub(super) fn motion(motion: &Motion) -> Result<Vec<u8>, ExportError> {
     let error = |reason: &str| ExportError::Format { format: "YAML", reason: reason.to_owned() };
     // The message counts seconds in 32 bits with a sign.
@@ -28,8 +29,16 @@ pub(super) fn motion(motion: &Motion) -> Result<Vec<u8>, ExportError> {
         list(names)
     );
     for (i, stamp) in stamps.into_iter().enumerate() {
-        let all =
-            |order: usize| list(motion.joints.iter().map(|j| number(j.derivatives[i][order])));
+        // The end stays at rest.
+        let is_end = i + 1 == motion.time.len();
+        let late = if is_end { 0.0 } else { stamp as f64 * 1e-9 - motion.time[i] };
+        let all = |order: usize| {
+            let at = |joint: &JointMotion| {
+                let here = joint.derivatives[i];
+                number(here[order] + late * here[order + 1])
+            };
+            list(motion.joints.iter().map(at))
+        };
         let _ = writeln!(
             text,
             "- positions: {}\n  velocities: {}\n  accelerations: {}\n  effort: []\n  time_from_start: {}",
@@ -70,11 +79,11 @@ mod tests {
     use nalgebra::UnitQuaternion;
 
     use super::*;
-    use crate::reorientation::motion::JointMotion;
+    use crate::robot::JointKind;
 
     fn joint(name: &str, positions: [f64; 2]) -> JointMotion {
         let derivatives = positions.map(|position| [position, 1e-7, -2.5e20, 0.0]).to_vec();
-        JointMotion { name: name.to_owned(), derivatives }
+        JointMotion { name: name.to_owned(), kind: JointKind::Revolute, derivatives }
     }
 
     fn two(end: f64) -> Motion {
@@ -103,6 +112,21 @@ points:
   time_from_start: {sec: 1, nanosec: 500000000}
 "#;
         assert_eq!(text, expected);
+    }
+
+    /// Half a nanosecond at 4 rad/s.
+    #[test]
+    fn values_are_those_of_the_rounded_times() {
+        let derivatives = vec![[1.0, 4.0, 0.0, 0.0]; 3];
+        let joints =
+            vec![JointMotion { name: "a".to_owned(), kind: JointKind::Revolute, derivatives }];
+        let time = vec![0.0, 0.5e-9 + 1.0, 2.0];
+        let two = Motion { time, joints, base: vec![UnitQuaternion::identity(); 3] };
+        let text = String::from_utf8(motion(&two).unwrap()).unwrap();
+        assert!(text.contains("nanosec: 1}"), "{text}");
+        let found = text.split("positions: [").nth(2).unwrap().split(']').next().unwrap();
+        let found: f64 = found.parse().unwrap();
+        assert!((found - (1.0 + 2e-9)).abs() < 1e-15, "{found}");
     }
 
     #[test]

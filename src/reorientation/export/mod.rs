@@ -9,6 +9,7 @@ mod parquet;
 
 use std::path::Path;
 
+use super::family::FamilySpec;
 use super::motion::Motion;
 use crate::output::{FileError, folder_of, remove_temporary, write_file};
 #[cfg(feature = "harness")]
@@ -16,6 +17,15 @@ pub use motions::write_motions;
 
 /// Intervals between the samples of an exported motion.
 pub const INTERVALS: usize = 500;
+
+/// Intervals between the samples of an exported motion of a family: of splines as many more as cut all pieces into equal parts,
+/// so that quintics through the samples, which robots' controllers play, are the spline again.
+pub fn intervals(family: FamilySpec) -> usize {
+    match family {
+        FamilySpec::SinePolynomial { .. } => INTERVALS,
+        FamilySpec::Spline { pieces, .. } => INTERVALS.next_multiple_of(pieces),
+    }
+}
 
 /// A format for one motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,12 +97,15 @@ pub fn write_motion(path: &Path, format: MotionFormat, motion: &Motion) -> Resul
     Ok(write_file(path, &bytes)?)
 }
 
-/// One row of the table of a motion. Angles in radians; the base's attitude turns base axes into
-/// inertial axes.
+/// One row of the table of a motion. Positions in radians, or in the unit that a row says; the base's attitude turns base axes
+/// into inertial axes.
 #[derive(Debug, serde::Serialize)]
 struct Row<'a> {
     time: f64,
     joint: &'a str,
+    /// Of robots with joints that slide alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'static str>,
     angle: f64,
     rate: f64,
     acceleration: f64,
@@ -105,13 +118,15 @@ struct Row<'a> {
 
 /// The rows of a motion, by time, then by joint.
 fn rows(motion: &Motion) -> impl Iterator<Item = Row<'_>> {
-    motion.time.iter().zip(&motion.base).enumerate().flat_map(|(i, (&time, base))| {
+    let slides = motion.slides();
+    motion.time.iter().zip(&motion.base).enumerate().flat_map(move |(i, (&time, base))| {
         motion.joints.iter().map(move |joint| {
             let [angle, rate, acceleration, jerk] = joint.derivatives[i];
             let [base_x, base_y, base_z, base_w] = base.coords.into();
             Row {
                 time,
                 joint: &joint.name,
+                unit: slides.then_some(joint.kind.si_unit()),
                 angle,
                 rate,
                 acceleration,

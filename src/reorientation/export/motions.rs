@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::{ExportError, INTERVALS, MotionFormat, write_motion};
+use super::{ExportError, MotionFormat, intervals, write_motion};
 use crate::experiment::{Plan, Run};
 use crate::output::{file_name, unlike, write_folder};
 use crate::reorientation::exhibits::best::best_motions;
@@ -37,7 +37,7 @@ pub fn write_motions(
             let name = unlike(&file_name(label), &mut taken);
             missed += usize::from(best.residual_deg > AT_GOAL_DEG);
             let path = folder.join(name).with_extension(format.extension());
-            write_motion(&path, format, &best.sample(INTERVALS))?;
+            write_motion(&path, format, &best.sample(intervals(best.problem.spec())))?;
         }
         Ok::<(), ExportError>(())
     })?;

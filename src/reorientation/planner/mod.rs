@@ -5,7 +5,7 @@ mod remark;
 mod walls;
 
 use std::num::NonZeroUsize;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 pub use planned::{Asked, OtherFamily, Planned, PlannedJson, Spent};
@@ -263,6 +263,7 @@ impl Search<'_> {
             interrupted,
             failure,
             other: None,
+            excursions: OnceLock::new(),
         })
     }
 

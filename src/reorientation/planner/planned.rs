@@ -1,6 +1,6 @@
 //! What a plan has come to.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 
@@ -72,6 +72,8 @@ pub struct Planned {
     pub failure: Option<Failure>,
     /// What the paper's family comes to, where that was searched for comparison.
     pub other: Option<OtherFamily>,
+    /// What happens on the way, once that was asked for.
+    pub(super) excursions: OnceLock<Excursions>,
 }
 
 /// The best motion of the paper's family.
@@ -92,7 +94,7 @@ pub struct OtherFamily {
 pub struct Asked<'a> {
     /// The task's file.
     pub task: String,
-    /// Keys of the task that are the paper's.
+    /// Keys of the task that its file leaves out.
     pub inherited: Vec<&'static str>,
     /// The optimiser.
     pub optimiser: &'a str,
@@ -153,8 +155,12 @@ impl Planned {
             least_time: self.reach.least_time(),
             on_walls: self.walls.as_ref().map(Walls::names),
             best_known_j: BestKnown::of(problem).map(|known| known.j),
-            assessment: (&self.assessment).into(),
-            excursions: ExcursionsJson::new(&self.excursions(), problem.task()),
+            assessment: AssessmentJson::new(&self.assessment, &problem.task().robot),
+            excursions: ExcursionsJson::new(
+                self.excursions(),
+                problem.task(),
+                &self.assessment.peaks,
+            ),
             shape: ShapeJson::new(problem, &self.coefficients, self.assessment.duration),
             sine_polynomial: self.other.as_ref(),
             interrupted: self.interrupted,
@@ -164,8 +170,10 @@ impl Planned {
     }
 
     /// How far base and joints go on the way.
-    pub fn excursions(&self) -> Excursions {
-        Excursions::on_the_way(&*self.problem, &self.coefficients, self.assessment.duration)
+    pub fn excursions(&self) -> &Excursions {
+        let duration = self.assessment.duration;
+        let follow = || Excursions::on_the_way(&*self.problem, &self.coefficients, duration);
+        self.excursions.get_or_init(follow)
     }
 
     /// Whether the goal is reached, and limits are kept, in words.

@@ -4,8 +4,10 @@ use std::fmt;
 
 use super::planned::Planned;
 use super::walls::Walls;
+use crate::reorientation::excursions::Closest;
 use crate::reorientation::family::FamilyName;
 use crate::reorientation::reach::{Block, Reach};
+use crate::robot::ShapeSource;
 
 /// So many variables on walls are named.
 const NAMED: usize = 4;
@@ -29,6 +31,26 @@ impl fmt::Display for Remark {
 }
 
 impl Planned {
+    /// Where bodies of the robot pass through each other, or what they are to be kept out of, if they do and the task does not forbid it.
+    pub fn overlap(&self) -> Option<Remark> {
+        if self.problem.task().path.clearance.is_some() {
+            return None;
+        }
+        let closest = self.excursions().closest.as_ref().filter(|own| own.distance < 0.0)?;
+        let Closest { between: [one, other], distance, at, shapes } = closest;
+        let source = match shapes {
+            ShapeSource::Stated => "",
+            ShapeSource::Derived => {
+                " (by shapes derived from masses and joints, as the robot's file states none)"
+            }
+        };
+        Some(Remark::Warning(format!(
+            "the motion passes through the robot itself: `{one}` and `{other}` overlap by {:.3} m at {at:.3} s{source}; \
+             `clearance_m` in `[task.limits]` keeps bodies apart",
+            -distance
+        )))
+    }
+
     /// Why the goal is missed, or which variables are on walls of the box, where that may matter; `budget` is what the search was given.
     pub fn remark(&self, budget: u64) -> Option<Remark> {
         let (task, family) = (self.problem.task(), self.problem.spec().name());

@@ -2,6 +2,7 @@
 
 use crate::reorientation::formulation::{Formulated, Formulation};
 use crate::search::Problem as _;
+use crate::trajectory::Family as _;
 
 /// A variable nearer to a wall than this share of its box is on it.
 const ON: f64 = 1e-4;
@@ -34,12 +35,15 @@ impl Walls {
     /// Those of a motion that was found in the problem's box.
     pub fn of(problem: &Formulated, coefficients: &[f64], duration: f64) -> Self {
         let family = problem.task().family();
-        let (joints, terms) = (family.joints(), family.terms());
+        let (joints, terms) = (family.leading(), family.terms());
+        let count = joints.len();
         let variable = |i: usize| match problem.formulation() {
-            _ if i == joints * terms => Variable::Duration,
-            Formulation::Raw => Variable::Alpha { joint: i % joints + 1, power: i / joints + 6 },
+            _ if i == count * terms => Variable::Duration,
+            Formulation::Raw => {
+                Variable::Alpha { joint: joints[i % count] + 1, power: i / count + 6 }
+            }
             Formulation::Scaled | Formulation::TimeFree => {
-                Variable::Bump { joint: i / terms + 1, bump: i % terms + 1 }
+                Variable::Bump { joint: joints[i / terms] + 1, bump: i % terms + 1 }
             }
         };
         let (mut on, mut widths) = (Vec::new(), vec![(0.0, 1.0); terms]);

@@ -3,14 +3,42 @@
 /** Tangent of half the angle that the camera sees. */
 const HALF_VIEW = 0.2;
 
+/** Free share around what is seen at first. */
+const MARGIN = 1.08;
+
 const START = { azimuth: -0.95, elevation: 0.42, zoom: 1 };
 
 class Camera {
-  /** Looks at `target` from where a ball of this radius is all in view. */
+  /** Looks at `target` from `distance`, among things of the size of `radius`. */
   constructor() {
     this.target = [0, 0, 0];
     this.radius = 1;
+    this.distance = 5;
     this.reset();
+  }
+
+  /** Goes where all of these places are in view from the first direction, in a square picture. */
+  fit(places) {
+    const extreme = (pick) => [0, 1, 2].map((k) => places.map((place) => place[k]).reduce((a, b) => pick(a, b)));
+    this.target = scale(add(extreme(Math.min), extreme(Math.max)), 0.5);
+    const most = (of) => places.reduce((most, place) => Math.max(most, of(place)), 0);
+    this.radius = most((place) => length(subtract(place, this.target)));
+    this.face(START);
+    const needed = (place) => {
+      const from = subtract(place, this.target);
+      const aside = Math.max(Math.abs(dot(from, this.right)), Math.abs(dot(from, this.up)));
+      return (MARGIN * aside) / HALF_VIEW + dot(from, this.backward);
+    };
+    this.distance = most(needed);
+  }
+
+  /** Looks along a direction. */
+  face({ azimuth, elevation }) {
+    const [ca, sa] = [Math.cos(azimuth), Math.sin(azimuth)];
+    const [ce, se] = [Math.cos(elevation), Math.sin(elevation)];
+    this.backward = [ce * ca, ce * sa, se];
+    this.right = [-sa, ca, 0];
+    this.up = cross(this.backward, this.right);
   }
 
   reset() {
@@ -29,12 +57,8 @@ class Camera {
 
   /** Makes ready to project onto a picture of this size [px]. */
   aim(width, height) {
-    const [ca, sa] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
-    const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
-    this.backward = [ce * ca, ce * sa, se];
-    this.right = [-sa, ca, 0];
-    this.up = cross(this.backward, this.right);
-    this.eye = add(this.target, scale(this.backward, (0.85 * this.radius) / HALF_VIEW / this.zoom));
+    this.face(this);
+    this.eye = add(this.target, scale(this.backward, this.distance / this.zoom));
     this.middle = [width / 2, height / 2];
     this.focal = Math.min(width, height) / 2 / HALF_VIEW;
   }

@@ -13,16 +13,34 @@ function poseAt(frames, share) {
     position: between(a.position, b.position, rest),
     attitude: attitudeBetween(a.attitude, b.attitude, rest),
     origins: all("origins"),
+    tips: all("tips"),
     axes: all("axes"),
     jaw: between(a.jaw, b.jaw, rest),
   };
 }
 
-/** A joint's angle, rate, acceleration and jerk between two frames. */
+/** A joint's position, rate, acceleration and jerk between two frames. */
 function stateAt(states, share) {
   const place = share * (states.length - 1);
   const i = Math.min(Math.floor(place), states.length - 2);
   return between(states[i], states[i + 1], place - i);
+}
+
+/** A number between two frames. */
+function valueAt(values, share) {
+  return stateAt(values.map((value) => [value]), share)[0];
+}
+
+/** How much of a limit is used; all of it where bodies that are to keep a distance touch. */
+function shareOf({ limit, is_least }, value) {
+  if (!is_least) return value / limit;
+  return value > 0 ? limit / value : 1;
+}
+
+/** Which bodies come closest, and when. */
+function closestSentence({ between: [one, other], distance, at }) {
+  const far = distance < 0 ? `overlap by ${(-distance).toFixed(3)} m` : `come within ${distance.toFixed(3)} m of each other`;
+  return `${one} and ${other} ${far} (at ${at.toFixed(2)} s); the red line joins what is nearest.`;
 }
 
 /** How much of what it may do a joint does: of its range to either side of the middle, and of its limits. */
@@ -37,7 +55,7 @@ class Player {
     this.scenes = scenes;
     this.view = new View(part("canvas"));
     this.parts = Object.fromEntries(
-      ["canvas", "play", "scrub", "speed", "loop", "reset", "instance", "about", "time", "yaw", "pitch", "roll", "error", "joints"]
+      ["canvas", "play", "scrub", "speed", "loop", "reset", "instance", "about", "time", "yaw", "pitch", "roll", "error", "joints", "limits", "limited"]
         .map((name) => [name, part(name)]),
     );
     this.listen();
@@ -67,16 +85,19 @@ class Player {
   choose(index) {
     this.pause();
     this.scene = this.scenes[index];
-    const { optimiser, seed, cost, duration, joints, largest_turn, largest_turn_at } = this.scene;
+    const { optimiser, seed, cost, duration, joints, largest_turn, largest_turn_at, closest, limited = [] } = this.scene;
     this.parts.about.textContent =
       `Found by ${optimiser} with seed ${seed}: J = ${significant(cost)}, ${significant(duration)} s. ` +
-      `On the way the base is up to ${largest_turn.toFixed(1)}° from where it started (at ${largest_turn_at.toFixed(2)} s).`;
+      `On the way the base is up to ${largest_turn.toFixed(1)}° from where it started (at ${largest_turn_at.toFixed(2)} s).` + (closest ? ` ${closestSentence(closest)}` : "");
     this.parts.canvas.ariaLabel =
-      `The robot seen from outside, in inertial axes: a satellite with two solar panels and an arm of ${joints.length} ` +
-      "joints that turns it, the way of the tool, the base’s axes, and the base at its goal as a dashed outline. " +
+      `The robot seen from outside, in inertial axes: the base and ${joints.length} ` +
+      "joints of arms that turn it, the way of the tool, the base’s axes, and the base at its goal as a dashed outline. " +
       "Arrow keys turn the view, plus and minus zoom, Home resets, space plays and pauses.";
     this.rows = joints.map((joint) => jointRow(joint));
     this.parts.joints.replaceChildren(...this.rows.map(({ row }) => row));
+    this.limits = limited.map((one) => limitRow(one));
+    this.parts.limits.hidden = limited.length === 0;
+    this.parts.limited.replaceChildren(...this.limits.map(({ row }) => row));
     this.view.show(this.scene);
     this.go(0);
   }
@@ -122,17 +143,23 @@ class Player {
     ["yaw", "pitch", "roll"].forEach((name, k) => (parts[name].textContent = degrees(angles[k])));
     parts.error.textContent = degrees(angleBetween(pose.attitude, scene.goal.attitude));
     scene.joints.forEach((joint, i) => this.rows[i].tell(stateAt(joint.states, share)));
+    (scene.limited ?? []).forEach((one, i) => this.limits[i].tell(valueAt(one.values, share)));
     this.view.at(pose, share);
   }
 }
 
-/** An angle to hundredths, with a minus that is as wide as a digit, and no minus before nothing. */
+/** An angle to hundredths. */
 function degrees(angle) {
-  const text = angle.toFixed(2);
-  return `${Number(text) === 0 ? "0.00" : text.replace("-", "−")}°`;
+  return `${decimals(angle, 2)}°`;
 }
 
-const MEASURES = ["angle", "rate", "acceleration", "jerk"];
+/** A number with so many decimals, with a minus that is as wide as a digit, and no minus before nothing. */
+function decimals(number, count) {
+  const text = number.toFixed(count);
+  return Number(text) === 0 ? (0).toFixed(count) : text.replace("-", "−");
+}
+
+const MEASURES = ["position", "rate", "acceleration", "jerk"];
 
 /** A joint's row of the table, and how to tell it the joint's state. */
 function jointRow(joint) {
@@ -145,10 +172,33 @@ function jointRow(joint) {
   const gauges = MEASURES.map((measure) => gauge(`${measure} of ${joint.name}, share of its limit`));
   row.append(name, angle, ...gauges.map(({ cell }) => cell));
   const tell = (state) => {
-    angle.textContent = degrees(state[0]);
+    angle.textContent = joint.unit === "m" ? `${decimals(state[0], 3)} m` : degrees(state[0]);
     shares(joint, state).forEach((share, k) => gauges[k].tell(share));
   };
   return { row, tell };
+}
+
+/** A row for what has a limit on the way, and how to tell it the value now. */
+function limitRow(limited) {
+  const { name, unit, limit, is_least, values } = limited;
+  const row = document.createElement("tr");
+  const head = document.createElement("th");
+  head.scope = "row";
+  head.textContent = name;
+  const cells = [0, 1, 2].map(() => Object.assign(document.createElement("td"), { className: "real" }));
+  const text = (value) => (unit ? `${Number(value.toPrecision(3))} ${unit}` : `${Math.round(100 * value)} %`).replace(/ °$/, "°").replace("-", "−");
+  const most = is_least ? Math.min(...values) : Math.max(...values);
+  cells[1].textContent = text(most);
+  cells[2].textContent = `${is_least ? "≥" : "≤"} ${text(limit)}`;
+  const { cell, tell } = gauge(`${name}, share of its limit`);
+  row.append(head, ...cells, cell);
+  return {
+    row,
+    tell: (value) => {
+      cells[0].textContent = text(value);
+      tell(shareOf(limited, value));
+    },
+  };
 }
 
 /** A cell with a bar and its share in words. */

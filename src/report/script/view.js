@@ -3,12 +3,12 @@
 const LIGHT = {
   sky: ["#f4f6f8", "#e3e8ed"], star: "#9aa7b4", grid: "#b9c3cd", ghost: "#0b5c8f", past: "#b4500f", ahead: "#c9b8a8",
   text: "#1c1e21", x: "#b54708", y: "#00704f", z: "#005a96",
-  body: [214, 205, 184], front: [214, 138, 66], panel: [58, 84, 138], joint: [92, 100, 110], link: [236, 238, 240], tool: [70, 76, 84],
+  near: "#b3261e", keepOut: [196, 120, 150], body: [214, 205, 184], front: [214, 138, 66], panel: [58, 84, 138], joint: [92, 100, 110], link: [236, 238, 240], tool: [70, 76, 84],
 };
 const DARK = {
   sky: ["#10141b", "#05070a"], star: "#8793a5", grid: "#2b3440", ghost: "#7cc0ee", past: "#f0a35e", ahead: "#5a4a3c",
   text: "#e8eaed", x: "#f08a4b", y: "#3cc79b", z: "#62b0ee",
-  body: [190, 180, 156], front: [222, 146, 74], panel: [66, 96, 160], joint: [104, 112, 124], link: [222, 226, 230], tool: [120, 128, 138],
+  near: "#ff8a80", keepOut: [176, 104, 136], body: [190, 180, 156], front: [222, 146, 74], panel: [66, 96, 160], joint: [104, 112, 124], link: [222, 226, 230], tool: [120, 128, 138],
 };
 
 /** Where the light comes from, and how much reaches what it does not. */
@@ -38,20 +38,16 @@ class View {
   show(scene) {
     this.scene = scene;
     this.palette = null;
-    const outline = scene.satellite.panels.flatMap(outlineOf);
-    const corners = [...outline, ...boxEdges([0, 0, 0], scene.satellite.half).flat()];
-    const places = [...scene.frames, scene.goal].flatMap(({ position, attitude, origins }) =>
-      [...corners, ...origins].map((point) => add(position, turn(attitude, point))),
+    const corners = baseCorners(scene);
+    const places = [...scene.frames, scene.goal].flatMap(({ position, attitude, origins, tips }) =>
+      [...corners, ...origins, ...tips].map((point) => add(position, turn(attitude, point))),
     );
-    const extreme = (pick) => [0, 1, 2].map((k) => places.map((place) => place[k]).reduce((a, b) => pick(a, b)));
-    const [low, high] = [extreme(Math.min), extreme(Math.max)];
-    this.camera.target = scale(add(low, high), 0.5);
-    this.camera.radius = Math.max(...places.map((place) => length(subtract(place, this.camera.target))));
-    this.floor = low[2] - 0.1 * this.camera.radius;
+    const afloat = (scene.keep_outs ?? []).filter(({ on_base }) => !on_base);
+    places.push(...afloat.flatMap((solid) => solidFaces(solid).flatMap(({ points }) => points)));
+    this.camera.fit(places);
+    this.floor = places.reduce((least, place) => Math.min(least, place[2]), Infinity) - 0.1 * this.camera.radius;
     this.trace = scene.frames.map(({ position, attitude, origins }) => add(position, turn(attitude, origins.at(-1))));
-    const { origins } = scene.frames[0];
-    const reach = origins.slice(1).reduce((sum, origin, i) => sum + length(subtract(origin, origins[i])), 0);
-    this.radius = 0.03 * (reach || this.camera.radius);
+    this.radius = 0.03 * (reachOf(scene) || this.camera.radius);
   }
 
   /** Shows a motion at a share of its time. */
@@ -76,6 +72,7 @@ class View {
     const items = [...this.gridLines(), ...this.traceLines(), ...this.faces(place)];
     for (const item of items.filter(Boolean).sort((a, b) => b.depth - a.depth)) item.draw();
     this.drawGhost();
+    this.drawNearest();
     this.drawAxes(place);
   }
 
@@ -83,7 +80,10 @@ class View {
     const palette = isDark() ? DARK : LIGHT;
     if (palette === this.palette) return;
     this.palette = palette;
-    this.body = satelliteFaces(this.scene.satellite, palette);
+    const solids = (onBase) =>
+      (this.scene.keep_outs ?? []).filter(({ on_base }) => on_base === onBase).flatMap((solid) => solidFaces(solid, palette.keepOut));
+    this.body = [...baseFaces(this.scene, palette), ...solids(true)];
+    this.afloat = solids(false);
   }
 
   drawSky(width, height) {
@@ -148,16 +148,31 @@ class View {
     return add(this.pose.position, turn(this.pose.attitude, this.pose.origins.at(-1)));
   }
 
+  /** A line between the bodies that are nearest now; it may be short, so nothing hides it. */
+  drawNearest() {
+    const points = this.scene.closest?.points;
+    if (!points) return;
+    const [from, to] = points[Math.round(this.share * (points.length - 1))];
+    this.line(from, to, this.palette.near, 3)?.draw();
+  }
+
   /** All faces that look towards the eye, shaded. */
   faces(place) {
-    const { pose, palette, camera } = this;
-    const arm = armFaces({ ...pose, radius: this.radius }, palette);
-    return [...this.body, ...arm].map(({ points, colour, normal }) => {
+    const { pose, palette } = this;
+    const { carriers, tip_carriers } = this.scene;
+    const arm = armFaces({ ...pose, carriers, tip_carriers, radius: this.radius }, palette);
+    const turned = (normal) => turn(pose.attitude, normal);
+    return [...this.shaded([...this.body, ...arm], place, turned), ...this.shaded(this.afloat, (point) => point, (normal) => normal)];
+  }
+
+  shaded(faces, place, turned) {
+    const { camera } = this;
+    return faces.map(({ points, colour, normal }) => {
       const corners = points.map(place);
       const centre = mean(corners);
       const toEye = unit(subtract(camera.eye, centre));
       let outward = normal
-        ? turn(pose.attitude, normal)
+        ? turned(normal)
         : unit(cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0])));
       if (!normal && dot(outward, toEye) < 0) outward = scale(outward, -1);
       if (normal && dot(outward, toEye) <= 0) return null;
@@ -186,19 +201,17 @@ class View {
   /** The base as it is to end, in outline. */
   drawGhost() {
     const { context, palette } = this;
-    const { goal, satellite } = this.scene;
+    const { goal } = this.scene;
     const place = (point) => add(goal.position, turn(goal.attitude, point));
-    const loops = satellite.panels.map(outlineOf).flatMap((outline) => outline.map((from, i) => [from, outline[(i + 1) % 4]]));
-    const edges = [...boxEdges([0, 0, 0], satellite.half), ...loops];
     context.setLineDash([5, 4]);
-    for (const [from, to] of edges) this.line(place(from), place(to), palette.ghost, 1.3, 0.85)?.draw();
+    for (const [from, to] of baseEdges(this.scene)) this.line(place(from), place(to), palette.ghost, 1.3, 0.85)?.draw();
     context.setLineDash([]);
   }
 
   /** The base's axes, with letters. */
   drawAxes(place) {
     const { context, palette, camera } = this;
-    const extent = 1.9 * Math.max(...this.scene.satellite.half);
+    const extent = 1.9 * baseSize(this.scene);
     context.font = "600 14px system-ui, sans-serif";
     context.textAlign = "center";
     context.textBaseline = "middle";
