@@ -100,6 +100,8 @@ pub mod dynamics;
 #[doc(hidden)]
 pub mod export;
 #[doc(hidden)]
+pub mod inverse_kinematics;
+#[doc(hidden)]
 pub mod kinematics;
 #[doc(hidden)]
 pub mod lanes;
@@ -111,6 +113,8 @@ pub mod posture;
 pub mod scalar;
 #[doc(hidden)]
 pub mod so3;
+#[doc(hidden)]
+pub mod straight;
 #[doc(hidden)]
 pub mod trajectory;
 #[doc(hidden)]

@@ -2,9 +2,6 @@
 
 use std::ops::Range;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng as _, SeedableRng};
-
 use super::mounted::{Anchor, Carrier, Mounted, Owner, Placed, Solid};
 use crate::kinematics::{LinkPose, Outward, Pose};
 use crate::robot::{Link, Rigid, Robot};
@@ -43,21 +40,6 @@ pub struct Overlap {
     pub owners: [Owner; 2],
     /// The place of each among the shapes of its owner.
     pub shapes: [usize; 2],
-}
-
-/// Random configurations within the joints' ranges, the same every time, with joints that follow others where these have them.
-fn configurations(robot: &Robot) -> impl Iterator<Item = Vec<f64>> + '_ {
-    let mut random = ChaCha8Rng::seed_from_u64(1);
-    (0..CONFIGURATIONS).map(move |_| {
-        let position = |[lower, upper]: [f64; 2]| {
-            let share = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-            lower + (upper - lower) * share
-        };
-        let mut positions: Vec<f64> =
-            robot.joints().map(|joint| joint.range).map(position).collect();
-        robot.place_followers(&mut positions);
-        positions
-    })
 }
 
 impl Bodies {
@@ -210,7 +192,7 @@ impl Bodies {
         let is_of_bodies = |[_, b]: &&[usize; 2]| !matches!(self.shapes[*b].owner, Owner::Solid(_));
         let mut left: Vec<[usize; 2]> = meetings.iter().filter(is_of_bodies).copied().collect();
         let mut placed = vec![Placed::nothing(); self.shapes.len()];
-        for positions in configurations(&self.robot) {
+        for positions in self.robot.random_configurations().take(CONFIGURATIONS) {
             if left.is_empty() {
                 break;
             }
@@ -227,7 +209,7 @@ impl Bodies {
         let mut farthest: Vec<f64> = (self.pairs.iter().map(of_solid))
             .map(|of_solid| if of_solid { f64::INFINITY } else { f64::NEG_INFINITY })
             .collect();
-        for positions in configurations(&self.robot) {
+        for positions in self.robot.random_configurations().take(CONFIGURATIONS) {
             let scene = self.at(&positions, Quat::identity());
             for (pair, farthest) in farthest.iter_mut().enumerate() {
                 if *farthest < f64::INFINITY {

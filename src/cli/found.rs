@@ -4,8 +4,10 @@ use std::fmt::Write as _;
 
 use super::motion::Told;
 use crate::reorientation::{
-    BestKnown, FamilySpec, NOT_CHECKED, OtherFamily, Planned, Reach, Spent,
+    BestKnown, FamilySpec, LegMotion, NOT_CHECKED, OtherFamily, Planned, PlannedLeg,
+    PlannedMission, Reach, Robustness, Spent,
 };
+use crate::task::Task;
 
 /// For people.
 pub(super) fn told(found: &Planned) -> String {
@@ -22,6 +24,9 @@ pub(super) fn told(found: &Planned) -> String {
     let told = Told { task, assessment: &found.assessment, excursions };
     let _ = writeln!(text, "{told}");
     let _ = writeln!(text, "  verdict        {}", found.verdict());
+    if let Some(robustness) = found.robustness() {
+        let _ = writeln!(text, "{}", robustness_told(&robustness, task));
+    }
     let _ = writeln!(text, "  not checked    {}", NOT_CHECKED.join(", "));
     if let Some(known) = BestKnown::of(&*found.problem) {
         let _ = writeln!(text, "  this J         {}", known.compared_with(found.assessment.cost));
@@ -32,6 +37,50 @@ pub(super) fn told(found: &Planned) -> String {
     let Spent { evaluations, seconds, .. } = found.spent;
     let s = if evaluations == 1 { "" } else { "s" };
     let _ = write!(text, "  {evaluations} evaluation{s} in {seconds:.2} s");
+    text
+}
+
+/// Residuals of robots as they may be, and what they come from.
+fn robustness_told(robustness: &Robustness, task: &Task) -> String {
+    let [median, most, worst] =
+        [0.5, 0.95, 1.0].map(|share| robustness.quantile(share).to_degrees());
+    let largest = robustness.sensitivities.iter().take(3);
+    let largest = largest.map(|(unknown, angle)| {
+        format!("{} {:.4}°", unknown.name(&task.robot), angle.to_degrees())
+    });
+    format!(
+        "  uncertain      residual of {} robots: {median:.4}° in the median, {most:.4}° for 95 %, {worst:.4}° at worst\n\
+         \x20                most of it by {}",
+        robustness.residuals.len(),
+        largest.collect::<Vec<_>>().join(", ")
+    )
+}
+
+/// Motion by motion.
+pub(super) fn mission_told(found: &PlannedMission) -> String {
+    let mut text = String::new();
+    for PlannedLeg { name, motion } in &found.legs {
+        let _ = writeln!(text, "{name}:");
+        match motion {
+            LegMotion::Planned(found) => {
+                let _ = writeln!(text, "{}", told(found));
+            }
+            LegMotion::Straight { points, distance, .. } => {
+                let duration = points.duration();
+                let _ = writeln!(text, "  straight       {distance} m in {duration:.6} s");
+            }
+        }
+    }
+    let verdict = if found.is_reached() {
+        "all motions reach their goals and keep all limits and ranges"
+    } else {
+        "not all motions reach their goals within all limits and ranges"
+    };
+    let _ = write!(
+        text,
+        "all together:\n  duration       {:.6} s\n  verdict        {verdict}",
+        found.duration()
+    );
     text
 }
 

@@ -270,6 +270,7 @@ impl From<PlanError> for CliError {
             PlanError::Search(failure) => Self::Search(failure),
             PlanError::Interrupted => Self::Interrupted("no motion was found before".to_owned()),
             PlanError::NoMotion => Self::NoMotion,
+            PlanError::Several => Self::Usage { message: error.to_string(), help: None },
         }
     }
 }

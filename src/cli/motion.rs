@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::CliError;
+use crate::inverse_kinematics::{Miss, Orientation};
 use crate::output::check_writable;
 #[cfg(feature = "harness")]
 use crate::output::create_folder;
@@ -13,8 +14,8 @@ use crate::reorientation::{
     AnyReorientation, Assessment, Closest, Excursions, Motion, MotionFormat, Used, intervals,
     write_motion,
 };
-use crate::robot::{JointKind, Robot, ShapeSource};
-use crate::task::Task;
+use crate::robot::{JointKind, MovingJoint, Robot, ShapeSource};
+use crate::task::{Task, ToolGoal};
 
 /// Where to write a motion.
 #[derive(Debug, Args)]
@@ -88,18 +89,18 @@ impl MotionFiles {
         duration: f64,
     ) -> Result<(), CliError> {
         let sample = |intervals| problem.sample(coefficients, duration, intervals);
-        self.write_samples(problem.task(), intervals(problem.spec()), sample)
+        let own = intervals(problem.spec());
+        self.write_samples(problem.task(), |intervals| sample(intervals.unwrap_or(own)))
     }
 
-    /// The same, of a motion that is sampled by intervals; `intervals` of them for other tools.
+    /// The same, of a motion that is sampled in so many intervals, or in as many as suit other tools.
     pub(super) fn write_samples(
         &self,
         task: &Task,
-        intervals: usize,
-        sample: impl Fn(usize) -> Motion,
+        sample: impl Fn(Option<usize>) -> Motion,
     ) -> Result<(), CliError> {
         if let Some((path, format)) = self.format()? {
-            let mut motion = sample(intervals);
+            let mut motion = sample(None);
             if !self.joints.is_empty() {
                 let is_asked = |name: &str| self.joints.iter().any(|asked| is_meant(asked, name));
                 motion.joints.retain(|joint| is_asked(&joint.name));
@@ -108,7 +109,7 @@ impl MotionFiles {
         }
         #[cfg(feature = "harness")]
         if let Some(folder) = &self.figures {
-            let motion = sample(crate::reorientation::SAMPLES);
+            let motion = sample(Some(crate::reorientation::SAMPLES));
             crate::reorientation::write_motion_figures(folder, &motion, task)?;
         }
         #[cfg(not(feature = "harness"))]
@@ -135,6 +136,31 @@ pub(super) fn residual(residual: f64, error: Option<f64>) -> String {
         Some(error) if error >= SHOWN_ERROR => format!("{degrees:.6}° ± {error:.6}°"),
         _ => format!("{degrees:.6}°"),
     }
+}
+
+/// Where the tool ends, and where that leaves the joints.
+fn tool_told(task: &Task, goal: &ToolGoal, Miss { position, angle }: &Miss) -> String {
+    let mut misses = Vec::new();
+    if goal.target.position.is_some() {
+        misses.push(format!("{position:.1e} m"));
+    }
+    if goal.target.orientation != Orientation::Any {
+        misses.push(format!("{:.1e}°", angle.to_degrees()));
+    }
+    let joints = task.robot.joints().zip(&task.goal.joints);
+    let at = |(joint, at): (MovingJoint<'_>, &f64)| {
+        let value = joint.kind.to_file_units(*at);
+        match joint.kind {
+            JointKind::Revolute => format!("{value:.3}°"),
+            JointKind::Prismatic => format!("{value:.4} m"),
+        }
+    };
+    let joints: Vec<String> = joints.map(at).collect();
+    format!(
+        "  tool           {} from its goal; joints end at {}",
+        misses.join(" and "),
+        joints.join(", ")
+    )
 }
 
 /// For people: cost and its parts, then the peaks joint by joint with the share of the limit used, and what happens on the way.
@@ -204,6 +230,9 @@ impl fmt::Display for Told<'_> {
             }
         }
         let mut lines = Vec::new();
+        if let (Some(goal), Some(miss)) = (&task.tool, &excursions.tool_miss) {
+            lines.push(tool_told(task, goal, miss));
+        }
         if let Some(Closest { between: [one, other], distance, at, shapes }) = &excursions.closest {
             let state = if *distance < 0.0 { "overlap by" } else { "come as near as" };
             let source = match shapes {

@@ -6,13 +6,15 @@ use clap::Args;
 
 use super::check::expect_task;
 use super::family::FamilyOptions;
-use super::found::told;
+use super::found::{mission_told, told};
 use super::motion::MotionFiles;
 use super::progress::Bar;
 use super::{CliError, read_task, shown, start_worker_threads, warn_of, watch};
 use crate::input::nearest;
 use crate::optimiser::Settings;
-use crate::reorientation::{Accuracy, Asked, BestKnown, FamilySpec, Planned, Planner, Reach};
+use crate::reorientation::{
+    Accuracy, Asked, BestKnown, FamilySpec, LegMotion, Planned, Planner, Reach,
+};
 use crate::task::{Task, TaskTable};
 
 /// Find the best motion for one task
@@ -65,6 +67,9 @@ impl Plan {
         expect_task(&document, "plan")?;
         let planner = Planner::read(&document, self.family.choice(), optimiser)?;
         self.files.check_joints(&planner.task().robot)?;
+        if planner.is_mission() {
+            return self.plan_mission(&planner);
+        }
         if let Some(residual) = planner.task().already_there() {
             return self.tell_already_there(planner.task(), residual);
         }
@@ -75,6 +80,53 @@ impl Plan {
             planner.plan(self.seed, self.budget, &watch)?
         };
         self.finish(&found, &planner.file().task)
+    }
+
+    /// Plans a task of several motions.
+    fn plan_mission(&self, planner: &Planner) -> Result<(), CliError> {
+        warn_of_task(planner.task());
+        let found = {
+            let watch = watch();
+            let _bar = Bar::new(self.budget, watch.clone());
+            planner.plan_mission(self.seed, self.budget, &watch)?
+        };
+        let task = &planner.file().task;
+        if self.json {
+            let json = found.json(&self.asked(task));
+            say!("{}", serde_json::to_string_pretty(&json).unwrap_or_default());
+        } else {
+            say!("{} by {}, seed {}", shown(self.file.as_ref(), ""), self.optimiser, self.seed);
+            if let Some(inheritance) = task.inheritance() {
+                say!("  not stated     {inheritance}");
+            }
+            say!("{}", mission_told(&found));
+        }
+        for leg in &found.legs {
+            let LegMotion::Planned(planned) = &leg.motion else { continue };
+            for remark in planned.remark(self.budget).into_iter().chain(planned.overlap()) {
+                note!("{}: {remark}", leg.name);
+            }
+        }
+        self.files.write_samples(planner.task(), |intervals| {
+            found.sample(|leg| intervals.unwrap_or_else(|| leg.intervals()))
+        })?;
+        if found.is_interrupted() {
+            return Err(CliError::Interrupted("these are the motions so far".to_owned()));
+        }
+        if self.require && !found.is_reached() {
+            let message = "not all motions reach their goals within all limits and ranges";
+            return Err(CliError::Required(message.to_owned()));
+        }
+        Ok(())
+    }
+
+    fn asked(&self, task: &TaskTable) -> Asked<'_> {
+        Asked {
+            task: shown(self.file.as_ref(), "xiao2023"),
+            inherited: task.inherited(),
+            optimiser: &self.optimiser,
+            seed: self.seed,
+        }
     }
 
     /// Says that there is nothing to plan.
@@ -106,12 +158,7 @@ impl Plan {
     /// Says what was found, as JSON or to people, and writes the files that were asked for.
     fn finish(&self, found: &Planned, task: &TaskTable) -> Result<(), CliError> {
         if self.json {
-            let json = found.json(Asked {
-                task: shown(self.file.as_ref(), "xiao2023"),
-                inherited: task.inherited(),
-                optimiser: &self.optimiser,
-                seed: self.seed,
-            });
+            let json = found.json(self.asked(task));
             say!("{}", serde_json::to_string_pretty(&json).unwrap_or_default());
         } else {
             let file = shown(self.file.as_ref(), "the paper's task");

@@ -106,7 +106,7 @@ impl Replay {
         start_worker_threads()?;
         let document = read_task(self.task.as_deref())?;
         expect_task(&document, "replay")?;
-        let task = TaskFile::read(&document)?.task.build(&document)?;
+        let task = TaskFile::read(&document)?.task.build_ends(&document)?;
         self.files.check_joints(&task.robot)?;
         warn_of(&task.robot);
         let unit = self.unit.map(|unit| match unit {
@@ -125,7 +125,8 @@ impl Replay {
         if !self.json && !trajectory.ignored.is_empty() {
             note!("note: these columns are not read: {}", trajectory.ignored.join(", "));
         }
-        self.files.write_samples(&task, INTERVALS, |intervals| replayed.sample(intervals))
+        let sample = |intervals: Option<usize>| replayed.sample(intervals.unwrap_or(INTERVALS));
+        self.files.write_samples(&task, sample)
     }
 }
 

@@ -3,6 +3,8 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use nalgebra::UnitQuaternion;
+
 use super::accuracy::Accuracy;
 use super::boxes::Boxes;
 use super::family::FamilySpec;
@@ -148,6 +150,13 @@ pub trait AnyReorientation: Debug + Send + Sync {
     /// Panics when there are more or fewer coefficients than the family's dimension.
     fn certify(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment;
 
+    /// The rotation from the goal to where the base ends.
+    ///
+    /// # Panics
+    ///
+    /// Panics when there are more or fewer coefficients than the family's dimension.
+    fn error(&self, coefficients: &[f64]) -> UnitQuaternion<f64>;
+
     /// The motion, sampled; see [`Motion::sample`].
     fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion;
 
@@ -190,6 +199,10 @@ impl<F: SearchedFamily> AnyReorientation for Reorientation<F> {
 
     fn certify(&self, coefficients: &[f64], duration: Option<f64>) -> Assessment {
         self.certify(coefficients, duration)
+    }
+
+    fn error(&self, coefficients: &[f64]) -> UnitQuaternion<f64> {
+        self.error_after(self.net_rotation(coefficients))
     }
 
     fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion {

@@ -173,8 +173,17 @@ impl fmt::Display for BestKnown {
 ///
 /// Boxes and accuracies are those of a search, not of the task.
 pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
-    let Task { robot, start, goal, limits, base_weight, goal_tolerance: _, path } =
-        &**problem.task();
+    let Task {
+        robot,
+        start,
+        goal,
+        tool: _,
+        limits,
+        base_weight,
+        goal_tolerance: _,
+        path,
+        uncertainty: _,
+    } = &**problem.task();
     let turn = start.base.inverse() * goal.base;
     let components = [turn.w, turn.i, turn.j, turn.k];
     let first = components.into_iter().find(|component| component.abs() >= ZERO);

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::motion::Motion;
 use super::path::{Heights, Place, Watched};
+use crate::inverse_kinematics::Miss;
 use crate::lanes::Width;
 use crate::robot::ShapeSource;
 use crate::task::{ClearanceLimit, Cone, Task, bodies_of};
@@ -30,6 +31,8 @@ pub struct Excursions {
     pub positions: Vec<[f64; 2]>,
     /// How much of each limit on the way is used.
     pub used: Vec<Used>,
+    /// By how much the tool misses its goal at the end, where the task states one.
+    pub tool_miss: Option<Miss>,
 }
 
 /// Two bodies, or a body and what it is kept out of, where they are closest.
@@ -154,6 +157,7 @@ impl Excursions {
             }),
             positions: positions.collect(),
             used: Vec::new(),
+            tool_miss: tool_miss(task, motion),
         };
         found.used = found.shares(task, of);
         found
@@ -212,6 +216,13 @@ impl Excursions {
         });
         used.collect()
     }
+}
+
+fn tool_miss(task: &Task, motion: &Motion) -> Option<Miss> {
+    let (goal, base) = (task.tool.as_ref()?, motion.base.last()?);
+    let ends = motion.joints.iter().map(|joint| joint.derivatives.last().map(|at| at[0]));
+    let joints: Vec<f64> = ends.collect::<Option<_>>()?;
+    Some(goal.miss(&task.robot, &task.goal.base, &joints, base))
 }
 
 /// Bodies that overlap by this share of the reach touch, as far as limits are kept.

@@ -7,8 +7,9 @@ use serde::Serialize;
 use super::any::AnyReorientation;
 use super::excursions::{Excursions, Used};
 use super::fitness::Assessment;
+use crate::inverse_kinematics::Miss;
 use crate::robot::{Robot, ShapeSource};
-use crate::task::Task;
+use crate::task::{Task, ToolGoal};
 use crate::trajectory::Peaks;
 
 /// Intervals in which a motion is looked at between its start and its end.
@@ -40,7 +41,7 @@ pub struct AssessmentJson {
 /// Largest derivatives, joint by joint.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
-enum PeaksJson {
+pub(super) enum PeaksJson {
     /// Of robots whose joints all turn.
     Degrees { rate_deg_s: Vec<f64>, acceleration_deg_s2: Vec<f64>, jerk_deg_s3: Vec<f64> },
     /// In degrees or metres, and seconds.
@@ -48,7 +49,7 @@ enum PeaksJson {
 }
 
 impl PeaksJson {
-    fn new(peaks: &Peaks, robot: &Robot) -> Self {
+    pub(super) fn new(peaks: &Peaks, robot: &Robot) -> Self {
         let all = |order: usize| -> Vec<f64> {
             let peaks = robot.joints().zip(&peaks.0);
             peaks.map(|(joint, peaks)| joint.kind.to_file_units(peaks[order].value)).collect()
@@ -101,6 +102,32 @@ pub(super) struct WayJson {
     /// Of every limit the share that is used by what uses most of it, null where bodies touch.
     limits_used: BTreeMap<&'static str, Option<f64>>,
     not_checked: [&'static str; 4],
+    /// Of tasks that state where the tool is to be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tool: Option<ToolJson>,
+}
+
+/// How the tool comes to its goal.
+#[derive(Debug, Serialize)]
+struct ToolJson {
+    position_error_m: f64,
+    angle_error_deg: f64,
+    /// The joints' positions at the goal, in degrees or metres.
+    joints: Vec<f64>,
+    /// How many configurations were found that bring the tool there.
+    branches: usize,
+}
+
+impl ToolJson {
+    fn new(goal: &ToolGoal, miss: &Miss, task: &Task) -> Self {
+        let joints = task.robot.joints().zip(&task.goal.joints);
+        Self {
+            position_error_m: miss.position,
+            angle_error_deg: miss.angle.to_degrees(),
+            joints: joints.map(|(joint, at)| joint.kind.to_file_units(*at)).collect(),
+            branches: goal.branches.len(),
+        }
+    }
 }
 
 /// What no motion is checked for.
@@ -131,6 +158,7 @@ impl WayJson {
             (limit, Some(shares.fold(0.0, f64::max)))
         });
         let of_joints = of_joints.into_iter().chain([("range", Some(ranges))]);
+        let tool = task.tool.as_ref().zip(excursions.tool_miss.as_ref());
         let used = |used: &Used| (used.limit.name(), used.share.is_finite().then_some(used.share));
         Self {
             largest_tool_speed_m_s: excursions.tool_speed,
@@ -141,6 +169,7 @@ impl WayJson {
             shapes: closest.map(|closest| closest.shapes),
             limits_used: of_joints.chain(excursions.used.iter().map(used)).collect(),
             not_checked: NOT_CHECKED,
+            tool: tool.map(|(goal, miss)| ToolJson::new(goal, miss, task)),
         }
     }
 }

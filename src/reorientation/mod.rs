@@ -33,6 +33,7 @@ mod poses;
 mod published;
 mod reach;
 mod replayed;
+mod robustness;
 mod settings;
 mod spline_box;
 #[cfg(feature = "harness")]
@@ -66,8 +67,8 @@ pub use measure::Workspace;
 pub use motion::{JointMotion, Motion};
 pub use path::{PathPeak, Watched};
 pub use planner::{
-    Asked, FamilyChoice, OtherFamily, PlanError, Planned, PlannedJson, Planner, Remark, Search,
-    Spent, Walls,
+    Asked, FamilyChoice, LegMotion, MissionJson, OtherFamily, PlanError, Planned, PlannedJson,
+    PlannedLeg, PlannedMission, Planner, Remark, Search, Spent, Walls,
 };
 pub use published::{Published, Reading, ReplayFile};
 pub use reach::{Block, Reach};
@@ -75,6 +76,7 @@ pub use replayed::{
     AngleUnit, Fault, FaultKind, GivenTrajectory, JointPeaks, PeakJson, PointReading, ReadPath,
     Replayed, ReplayedJson, TrajectoryError,
 };
+pub use robustness::{Robustness, RobustnessJson};
 pub use settings::{TaskFile, TaskProblem, TrajectoryTable};
 pub use spline_box::SplineBox;
 #[cfg(feature = "harness")]

@@ -95,6 +95,16 @@ impl Motion {
         Self { joints, time: taus.iter().map(|tau| tau * duration).collect(), base }
     }
 
+    /// Goes on with another motion, which starts where and when this one ends.
+    pub(super) fn go_on(&mut self, next: Self) {
+        let end = self.time.last().copied().unwrap_or_default();
+        self.time.extend(next.time.iter().skip(1).map(|time| end + time));
+        self.base.extend(&next.base[1..]);
+        for (joint, next) in self.joints.iter_mut().zip(next.joints) {
+            joint.derivatives.extend(&next.derivatives[1..]);
+        }
+    }
+
     /// The base's ZYX Euler angles, `[yaw, pitch, roll]` \[rad\] at each time. Of all triples that an attitude has, that nearest to
     /// the one before, so that angles go on where a full or a half turn is passed.
     pub fn base_zyx(&self) -> Vec<[f64; 3]> {

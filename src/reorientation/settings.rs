@@ -146,6 +146,15 @@ impl TaskFile {
         self.trajectory.build(Arc::new(self.task.build(document)?), document)
     }
 
+    /// A task over the paper's family.
+    pub(super) fn few_terms(
+        &self,
+        task: Arc<Task>,
+        document: &Document,
+    ) -> Result<TaskProblem, InputError> {
+        self.trajectory.clone().with_family(FamilyName::SinePolynomial).build(task, document)
+    }
+
     /// The same over the family that `plan` searches.
     #[must_use]
     pub fn planned(self) -> Self {

@@ -2,6 +2,7 @@
 
 mod base;
 mod collision;
+mod configurations;
 mod derived;
 mod dh;
 mod error;
@@ -25,6 +26,7 @@ mod to_urdf;
 mod tree;
 mod urdf;
 mod urdf_shapes;
+mod varied;
 mod xml;
 
 pub use base::BaseTable;

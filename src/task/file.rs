@@ -11,10 +11,11 @@ use super::keep_out::KeepOut;
 use super::path_limits::{ClearanceLimit, Impossible};
 use super::reader::Reader;
 use super::tables::{
-    LIMIT_KEYS, LimitsTable, PostureTable, StatedTable, WeightsTable, placed, unplaced,
+    Cycles, LIMIT_KEYS, LimitsTable, PostureTable, StatedTable, WeightsTable, placed, unplaced,
 };
+use super::uncertainty::UncertaintyTable;
 use super::way::Way;
-use super::{PoseTable, Task};
+use super::{PoseTable, Posture, PostureParts, Task, ToolGoal};
 use crate::input::{Document, Fraction, InputError, NonNegative, Positive, nearest};
 use crate::robot::{BaseTable, Follows, Locked, Outfit, PayloadTable, Robot, RobotFile};
 use crate::trajectory::Limits;
@@ -41,12 +42,18 @@ pub struct TaskTable {
     base: Option<Spanned<BaseTable>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     payload: Option<Spanned<PayloadTable>>,
-    start: PostureTable,
-    goal: PostureTable,
+    pub(super) start: PostureTable,
+    pub(super) goal: PostureTable,
     limits: LimitsTable,
     weights: WeightsTable,
     #[serde(skip_serializing_if = "KeepOut::is_empty")]
     keep_out: KeepOut,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) via: Vec<PostureParts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) cycles: Option<Spanned<Cycles>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    uncertainty: Option<UncertaintyTable>,
     /// Limits on rate, acceleration and jerk that a sweep states.
     #[serde(skip)]
     swept: [bool; 3],
@@ -64,11 +71,29 @@ impl From<StatedTable> for TaskTable {
             limits,
             weights,
             keep_out,
+            via,
+            cycles,
+            uncertainty,
         } = stated;
         let robot = robot.unwrap_or_else(|| Spanned::new(0..0, PAPERS_ROBOT.to_owned()));
         let swept = [false; 3];
-        Self { robot, locked, follow, base, payload, start, goal, limits, weights, keep_out, swept }
-            .filled()
+        Self {
+            robot,
+            locked,
+            follow,
+            base,
+            payload,
+            start,
+            goal,
+            limits,
+            weights,
+            keep_out,
+            via,
+            cycles,
+            uncertainty,
+            swept,
+        }
+        .filled()
     }
 }
 impl TaskTable {
@@ -252,6 +277,12 @@ impl TaskTable {
 
     /// The task. A robot that does not come with the program is a file, sought beside `document`.
     pub fn build(&self, document: &Document) -> Result<Task, InputError> {
+        self.check_single(document)?;
+        self.build_ends(document)
+    }
+
+    /// The task from its start to its goal, whatever lies between.
+    pub fn build_ends(&self, document: &Document) -> Result<Task, InputError> {
         let robot = self.robot(document)?;
         self.check_stated(&robot, document)?;
         let reader = Reader { document, robot: &robot };
@@ -267,13 +298,25 @@ impl TaskTable {
         let tolerance = self.goal.tolerance_deg.as_ref().map_or(TOLERANCE_DEG, |t| t.get_ref().0);
         let weight = self.weights.base.as_ref().map_or(super::BASE_WEIGHT, |base| base.get_ref().0);
         let way = Way { limits: &self.limits, weights: &self.weights, robot: &robot, document };
+        if let Some(tool) = &self.start.tool {
+            let message = "found `tool`, which is for goals alone";
+            return Err(document.error_at(tool.span(), message, None));
+        }
+        if let Some(retreat) = &self.goal.retreat_m {
+            let message = "found `retreat_m`, which is for the start and for tools on the way";
+            return Err(document.error_at(retreat.span(), message, None));
+        }
+        let start = reader.posture(&self.start)?;
+        let (goal, tool) = self.goal(&reader, &start, &limits)?;
         let mut task = Task {
-            start: reader.posture(&self.start)?,
-            goal: reader.posture(&self.goal)?,
+            start,
+            goal,
+            tool,
             limits: Limits(limits),
             base_weight: weight,
             goal_tolerance: tolerance.to_radians(),
             path: way.build()?,
+            uncertainty: self.uncertainty.as_ref().map(|own| own.build(&reader)).transpose()?,
             robot: Arc::new(robot),
         };
         let solids = self.keep_out.solids(&task.robot, &task.start);
@@ -282,14 +325,70 @@ impl TaskTable {
         if let Some(least) = least.or((!solids.is_empty()).then_some(0.0)) {
             task.path.clearance = Some(ClearanceLimit::new(&task.robot, solids, least));
         }
-        match task.impossible() {
+        let (task, impossible) = self.branched(task, document)?;
+        match impossible {
             None => Ok(task),
             Some(Impossible { key, reason }) => {
                 Err(document.error_at(self.limits.span_of(key), reason, None))
             }
         }
     }
+
+    /// The goal, and what it is in terms of the tool if the table states that.
+    fn goal(
+        &self,
+        reader: &Reader<'_>,
+        start: &Posture,
+        limits: &[[f64; 3]],
+    ) -> Result<(Posture, Option<ToolGoal>), InputError> {
+        let Some(table) = &self.goal.tool else {
+            return Ok((reader.posture(&self.goal)?, None));
+        };
+        let failed = |message: String| reader.document.error_at(table.span(), message, None);
+        if let Some(span) = self.goal.joints_span() {
+            let message = "found both `tool` and the joints' positions, expected one of them";
+            return Err(reader.document.error_at(span, message, None));
+        }
+        let base = self.goal.base();
+        let origin = start.base_position(reader.robot);
+        let tool = table.get_ref();
+        let tool = tool.build(reader.robot, origin, &base, &start.joints, &efforts(limits));
+        let tool = tool.map_err(failed)?;
+        Ok((Posture { joints: tool.branches[0].clone(), base }, Some(tool)))
+    }
+
+    /// The same task with the branches of its goal that no limit excludes, at the branch that the table asks for; and what is
+    /// impossible about it.
+    fn branched(
+        &self,
+        mut task: Task,
+        document: &Document,
+    ) -> Result<(Task, Option<Impossible>), InputError> {
+        let (Some(table), Some(mut goal)) = (&self.goal.tool, task.tool.take()) else {
+            let impossible = task.impossible();
+            return Ok((task, impossible));
+        };
+        let impossible = task.impossible();
+        goal.branches.retain(|joints| task.ending_with(joints).impossible().is_none());
+        let count = goal.branches.len();
+        if let Some(branch) = table.get_ref().branch() {
+            if !(1..=count).contains(&branch) && count > 0 {
+                let message = format!("found `branch = {branch}`, expected one of 1 to {count}");
+                return Err(document.error_at(table.span(), message, None));
+            }
+            goal.branches = goal.branches.into_iter().skip(branch - 1).take(1).collect();
+        }
+        let Some(first) = goal.branches.first() else { return Ok((task, impossible)) };
+        let mut task = task.ending_with(first);
+        task.tool = Some(goal);
+        Ok((task, None))
+    }
 }
+/// What a unit of each joint's way counts: its least time \[s\].
+pub(super) fn efforts(limits: &[[f64; 3]]) -> Vec<f64> {
+    limits.iter().map(|[rate, ..]| 1.0 / rate).collect()
+}
+
 /// The robot's file, and its text.
 fn find_robot(
     name: &Spanned<String>,

@@ -8,6 +8,7 @@ use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
 use super::Posture;
+use super::frame::Frame;
 use crate::clearance::{Anchor, Solid};
 use crate::robot::{Robot, ShapeTable, shapes_of};
 
@@ -24,15 +25,6 @@ struct SolidTable {
     shapes: Vec<ShapeTable>,
 }
 
-/// The axes that shapes stand in; both have their origin at the base's centre of mass, the inertial ones where that is at the start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Frame {
-    #[default]
-    Inertial,
-    Base,
-}
-
 impl KeepOut {
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -40,8 +32,7 @@ impl KeepOut {
 
     /// The solids, for a motion from a posture.
     pub(super) fn solids(&self, robot: &Robot, start: &Posture) -> Vec<Solid> {
-        let posture = crate::posture::Posture::of(robot, &start.joints, start.base);
-        let origin = Vector3::from(posture.position);
+        let origin = start.base_position(robot);
         let of_one = |(name, table): &(String, SolidTable)| {
             let (origin, anchor) = match table.frame {
                 Frame::Inertial => (origin, Anchor::Inertial),

@@ -2,26 +2,34 @@
 
 mod cones;
 mod file;
+mod frame;
 mod joints;
 mod keep_out;
+mod mission;
 mod path_limits;
 mod pose;
 mod reader;
 mod shipped;
 mod tables;
+mod tool_goal;
+mod uncertainty;
 mod way;
 
 use std::sync::Arc;
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
 #[cfg(feature = "harness")]
 use serde_json::{Value, json};
 
 use crate::robot::Robot;
 use crate::trajectory::{Limits, SinePolynomial, Spline};
 pub use file::TaskTable;
+pub use frame::Frame;
+pub use mission::{Leg, Mission};
 pub use path_limits::{ClearanceLimit, Cone, Impossible, PathLimits, TurnFrom, bodies_of};
 pub use pose::{PoseTable, PostureParts};
+pub use tool_goal::ToolGoal;
+pub use uncertainty::{Uncertainty, Unknown};
 
 /// `K_b` where a file says nothing (eq. 33).
 const BASE_WEIGHT: f64 = 0.9;
@@ -35,6 +43,8 @@ pub struct Task {
     pub start: Posture,
     /// Where it is to end.
     pub goal: Posture,
+    /// Where the tool is to be then, where the task states that instead of the joints' positions.
+    pub tool: Option<ToolGoal>,
     /// What each joint may do.
     pub limits: Limits,
     /// `K_b`, the weight of the base's attitude; time weighs `K_t = 1 − K_b`.
@@ -43,6 +53,8 @@ pub struct Task {
     pub goal_tolerance: f64,
     /// What the motion has to keep to on its way.
     pub path: PathLimits,
+    /// What is not known exactly, where the task says so.
+    pub uncertainty: Option<Uncertainty>,
 }
 
 impl Task {
@@ -85,6 +97,13 @@ impl Task {
         family.following(self.robot.follows())
     }
 
+    /// The same task with other joint positions at its goal \[rad or m\].
+    #[must_use]
+    pub(crate) fn ending_with(&self, joints: &[f64]) -> Self {
+        let goal = Posture { joints: joints.to_vec(), base: self.goal.base };
+        Self { goal, ..self.clone() }
+    }
+
     /// What is left to do at the start, if it is nothing: the angle \[rad\], within the goal's tolerance, by which the base is off.
     pub fn already_there(&self) -> Option<f64> {
         let residual = self.start.base.angle_to(&self.goal.base);
@@ -118,8 +137,13 @@ pub struct Posture {
     pub base: UnitQuaternion<f64>,
 }
 
-#[cfg(feature = "harness")]
 impl Posture {
+    /// The base's centre of mass from the system's, inertial axes \[m\].
+    pub(crate) fn base_position(&self, robot: &Robot) -> Vector3<f64> {
+        crate::posture::Posture::of(robot, &self.joints, self.base).position.into()
+    }
+
+    #[cfg(feature = "harness")]
     fn identity(&self) -> Value {
         let [x, y, z, w]: [f64; 4] = self.base.coords.into();
         json!({ "joints": self.joints, "base": [w, x, y, z] })

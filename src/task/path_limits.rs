@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::Task;
 use crate::clearance::{Anchor, Bodies, Owner, Solid};
-use crate::robot::{Joint, Robot, Shape, ShapeSource};
+use crate::robot::{Robot, Shape, ShapeSource};
 use crate::so3::Quat;
 
 /// Start and goal may break a limit by so much \[rad\].
@@ -72,7 +72,7 @@ impl ClearanceLimit {
     pub fn new(robot: &Robot, solids: Vec<Solid>, least: f64) -> Self {
         let bodies = Arc::new(bodies_of(robot, solids.clone()).0);
         let farthest: Arc<[f64]> = bodies.farthest().into();
-        let reach = reach(robot);
+        let reach = robot.reach();
         let least_of_pairs = least_of_pairs(&farthest, least, reach);
         Self { least, least_of_pairs, bodies, reach, solids, farthest }
     }
@@ -125,25 +125,6 @@ const NEAR: f64 = 0.25;
 fn least_of_pairs(farthest: &[f64], least: f64, reach: f64) -> Vec<f64> {
     let together = f64::min(2.0 * least, NEAR * reach);
     farthest.iter().map(|farthest| if *farthest < together { 0.0 } else { least }).collect()
-}
-
-/// How far from its mount a robot reaches when it is stretched out \[m\]; one where nothing is known of that.
-fn reach(robot: &Robot) -> f64 {
-    let mut reaches: Vec<f64> = Vec::with_capacity(robot.links().len());
-    for link in robot.links() {
-        let slide = match &link.joint {
-            Joint::Prismatic(axis) => {
-                axis.range.iter().fold(0.0, |most: f64, end| most.max(end.abs()))
-            }
-            _ => 0.0,
-        };
-        let inner = link.parent.map(|parent| reaches[parent] + link.placement.translation().norm());
-        reaches.push(inner.unwrap_or_default() + slide);
-    }
-    let tool = robot.tool();
-    let at_tool = tool.link.map(|link| reaches[link] + tool.placement.translation().norm());
-    let most = reaches.into_iter().chain(at_tool).fold(0.0, f64::max);
-    if most > 0.0 { most } else { 1.0 }
 }
 
 /// The attitude that turns of the base on the way are measured from.

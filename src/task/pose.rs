@@ -1,9 +1,13 @@
 //! Parts of start and goal that replace those of a `[task]` table.
 
+use std::ops::Range;
+
+use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::joints::Positions;
+use super::tool_goal::ToolTable;
 use crate::input::Finite;
 use crate::robot::Robot;
 
@@ -19,7 +23,7 @@ pub struct PoseTable {
     pub goal: PostureParts,
 }
 
-/// Joint positions, base attitude, or both.
+/// Joint positions or a place of the tool, base attitude, or both.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub struct PostureParts {
@@ -27,6 +31,8 @@ pub struct PostureParts {
     pub(super) joints_deg: Option<Spanned<Positions>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) joints: Option<Spanned<Positions>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) tool: Option<Spanned<ToolTable>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) base_zyx_deg: Option<[Finite; 3]>,
 }
@@ -42,6 +48,17 @@ impl PostureParts {
         } else {
             Self { joints: positions, base_zyx_deg, ..Self::default() }
         }
+    }
+
+    /// The base's attitude, if it is stated.
+    pub(super) fn base(&self) -> Option<UnitQuaternion<f64>> {
+        let [yaw, pitch, roll] = self.base_zyx_deg?.map(|angle| angle.0.to_radians());
+        Some(UnitQuaternion::from_euler_angles(roll, pitch, yaw))
+    }
+
+    /// Where the joints' positions stand, if they stand anywhere.
+    pub(super) fn joints_span(&self) -> Option<Range<usize>> {
+        [&self.joints, &self.joints_deg].into_iter().flatten().map(Spanned::span).next()
     }
 
     fn is_empty(&self) -> bool {

@@ -1,11 +1,10 @@
 //! Reading what a task states joint by joint.
 
-use nalgebra::UnitQuaternion;
 use toml::Spanned;
 
-use super::Posture;
-use super::joints::{self, Key};
+use super::joints::{self, Key, Positions};
 use super::tables::{LIMIT_KEYS, Pair, PostureTable};
+use super::{Posture, PostureParts};
 use crate::input::{Document, Finite, InputError, Positive};
 use crate::robot::{Follow, Robot};
 
@@ -20,15 +19,23 @@ pub(super) struct Reader<'a> {
 
 impl Reader<'_> {
     pub(super) fn posture(&self, table: &PostureTable) -> Result<Posture, InputError> {
-        let pair = [table.joints_deg.as_ref(), table.joints.as_ref()];
+        let joints = self.stated_joints([table.joints_deg.as_ref(), table.joints.as_ref()])?;
+        Ok(Posture { joints, base: table.base() })
+    }
+
+    /// The joints' positions of a part of a posture \[rad or m\].
+    pub(super) fn joints(&self, parts: &PostureParts) -> Result<Vec<f64>, InputError> {
+        self.stated_joints([parts.joints_deg.as_ref(), parts.joints.as_ref()])
+    }
+
+    fn stated_joints(
+        &self,
+        pair: [Option<&Spanned<Positions>>; 2],
+    ) -> Result<Vec<f64>, InputError> {
         let (values, key) = self.one_of(pair, ["joints_deg", "joints"])?;
         let joints = joints::read(values, |value: Finite| value.0, key, self.robot, self.document)?;
-        let joints = self
-            .positions(&joints)
-            .map_err(|(message, help)| self.document.error_at(values.span(), message, help))?;
-        let base = table.base_zyx_deg.as_ref().map_or([Finite(0.0); 3], |base| *base.get_ref());
-        let [yaw, pitch, roll] = base.map(|angle| angle.0.to_radians());
-        Ok(Posture { joints, base: UnitQuaternion::from_euler_angles(roll, pitch, yaw) })
+        self.positions(&joints)
+            .map_err(|(message, help)| self.document.error_at(values.span(), message, help))
     }
 
     /// Positions \[rad or m\] from those that are stated; or what is wrong, and some help.
@@ -63,7 +70,16 @@ impl Reader<'_> {
             let rates: Vec<_> = self.robot.joints().map(|joint| joint.rate).collect();
             return Ok(self.with_followers(&rates));
         }
-        let (values, key) = self.one_of(pair, LIMIT_KEYS[order])?;
+        self.positive(pair, LIMIT_KEYS[order])
+    }
+
+    /// Positive numbers of all joints, in SI units.
+    pub(super) fn positive(
+        &self,
+        pair: Pair<'_>,
+        keys: [&'static str; 2],
+    ) -> Result<Vec<f64>, InputError> {
+        let (values, key) = self.one_of(pair, keys)?;
         let stated =
             joints::read(values, |value: Positive| value.0, key, self.robot, self.document)?;
         let joints = self.robot.joints().zip(stated);

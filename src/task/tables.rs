@@ -1,7 +1,9 @@
 //! The tables of a `[task]`, as files state them and with what is filled in.
 
+use std::num::NonZeroUsize;
 use std::ops::Range;
 
+use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
@@ -9,8 +11,10 @@ use super::cones::Cones;
 use super::joints::{JointValues, Limit, Positions};
 use super::keep_out::KeepOut;
 use super::path_limits::TurnFrom;
+use super::tool_goal::ToolTable;
+use super::uncertainty::UncertaintyTable;
 use super::{PostureParts, shipped};
-use crate::input::{Finite, Fraction, NonNegative, Positive, placeless};
+use crate::input::{Finite, Fraction, NonNegative, Positive, count, placeless};
 use crate::robot::{BaseTable, Follows, Locked, PayloadTable, Robot, RobotFile};
 
 /// What a file states.
@@ -27,7 +31,14 @@ pub(super) struct StatedTable {
     pub(super) limits: LimitsTable,
     pub(super) weights: WeightsTable,
     pub(super) keep_out: KeepOut,
+    pub(super) via: Vec<PostureParts>,
+    pub(super) cycles: Option<Spanned<Cycles>>,
+    pub(super) uncertainty: Option<UncertaintyTable>,
 }
+
+/// How many swings a turn of the base is divided among.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Cycles(#[serde(deserialize_with = "count::<100, _, _>")] pub(super) NonZeroUsize);
 
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
@@ -38,11 +49,17 @@ pub(super) struct PostureTable {
     /// In degrees or metres, by joint.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) joints: Option<Spanned<Positions>>,
+    /// Where the tool is to be instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) tool: Option<Spanned<ToolTable>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) base_zyx_deg: Option<Spanned<[Finite; 3]>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) tolerance_deg: Option<Spanned<Positive>>,
-    /// Whether a pose states the joints' positions, and the base's attitude.
+    /// How far the tool first goes straight back \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) retreat_m: Option<Spanned<Positive>>,
+    /// Whether a pose states the joints' positions or the tool's place, and the base's attitude.
     #[serde(skip)]
     pub(super) posed: [bool; 2],
 }
@@ -149,7 +166,7 @@ fn freed<T: Copy>(
 
 impl PostureTable {
     pub(super) fn filled(&mut self, default: &Self) {
-        if self.joints.is_none() && self.joints_deg.is_none() {
+        if self.is_without_joints() {
             self.joints = unplaced(default.joints.as_ref());
             self.joints_deg = unplaced(default.joints_deg.as_ref());
         }
@@ -166,18 +183,32 @@ impl PostureTable {
         Self {
             joints_deg: joints(self.joints_deg.as_ref()),
             joints: joints(self.joints.as_ref()),
+            tool: self.tool.clone(),
             base_zyx_deg: if base_posed {
                 self.base_zyx_deg.clone()
             } else {
                 placed(self.base_zyx_deg.as_ref())
             },
             tolerance_deg: self.tolerance_deg.clone(),
+            retreat_m: self.retreat_m.clone(),
             posed: self.posed,
         }
     }
 
+    /// The base's attitude.
+    pub(super) fn base(&self) -> UnitQuaternion<f64> {
+        let zyx = self.base_zyx_deg.as_ref().map_or([Finite(0.0); 3], |base| *base.get_ref());
+        let [yaw, pitch, roll] = zyx.map(|angle| angle.0.to_radians());
+        UnitQuaternion::from_euler_angles(roll, pitch, yaw)
+    }
+
+    /// Where the joints' positions stand, if they stand anywhere.
+    pub(super) fn joints_span(&self) -> Option<Range<usize>> {
+        [&self.joints, &self.joints_deg].into_iter().flatten().map(Spanned::span).next()
+    }
+
     pub(super) fn is_without_joints(&self) -> bool {
-        self.joints.is_none() && self.joints_deg.is_none()
+        self.joints.is_none() && self.joints_deg.is_none() && self.tool.is_none()
     }
 
     /// Whether positions, and the attitude, are the file's own.
@@ -187,6 +218,7 @@ impl PostureTable {
         let [joints_posed, base_posed] = self.posed;
         [
             joints_posed
+                || self.tool.is_some()
                 || joints.iter().any(|joints| is_placed(joints.as_ref().map(Spanned::span))),
             base_posed || is_placed(self.base_zyx_deg.as_ref().map(Spanned::span)),
         ]
@@ -258,20 +290,24 @@ impl LimitsTable {
 impl PostureTable {
     /// The same posture but for some parts.
     pub(super) fn with(&self, parts: &PostureParts) -> Self {
-        let Self { joints_deg, joints, base_zyx_deg, tolerance_deg, posed } = self.clone();
+        let Self { joints_deg, joints, tool, base_zyx_deg, tolerance_deg, retreat_m, posed } =
+            self.clone();
         let base = parts.base_zyx_deg.map(|base| Spanned::new(0..0, base));
-        let has_joints = parts.joints_deg.is_some() || parts.joints.is_some();
-        let (joints_deg, joints) = if has_joints {
-            (parts.joints_deg.clone(), parts.joints.clone())
+        let has_joints =
+            parts.joints_deg.is_some() || parts.joints.is_some() || parts.tool.is_some();
+        let (joints_deg, joints, tool) = if has_joints {
+            (parts.joints_deg.clone(), parts.joints.clone(), parts.tool.clone())
         } else {
-            (joints_deg, joints)
+            (joints_deg, joints, tool)
         };
         Self {
             joints_deg,
             joints,
+            tool,
             posed: [posed[0] || has_joints, posed[1] || base.is_some()],
             base_zyx_deg: base.or(base_zyx_deg),
             tolerance_deg,
+            retreat_m,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Plans the motion of one task: what is searched, from how many starts, and once more where the goal was missed.
 
+mod branches;
+mod mission;
 mod planned;
 mod remark;
 mod walls;
@@ -8,6 +10,7 @@ use std::num::NonZeroUsize;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
+pub use mission::{LegMotion, MissionJson, PlannedLeg, PlannedMission};
 pub use planned::{Asked, OtherFamily, Planned, PlannedJson, Spent};
 pub use remark::Remark;
 use toml::Spanned;
@@ -24,7 +27,7 @@ use super::spline_box::SplineBox;
 use crate::input::{Document, InputError};
 use crate::optimiser::{Optimiser, Scp, Settings};
 use crate::search::{Failure, Oracle, Rng, Stop, Watch};
-use crate::task::Task;
+use crate::task::{Mission, Task};
 use crate::trajectory::Spline;
 
 /// Starts that `scp` follows over splines.
@@ -98,6 +101,9 @@ pub enum PlanError {
     /// Nothing came of it.
     #[error("no motion found: no evaluation gave a finite cost")]
     NoMotion,
+    /// The task takes several motions.
+    #[error("this is a task of several motions, expected one of a single motion")]
+    Several,
 }
 
 /// A task to plan, and the optimiser that does it.
@@ -109,6 +115,8 @@ pub struct Planner {
     /// The task over the paper's family, where nobody asked for a family.
     other: Option<TaskProblem>,
     optimiser: Settings,
+    /// Of a task of several motions all of them; then `problem` is that from the start to the goal.
+    mission: Option<Arc<Mission>>,
 }
 
 impl Planner {
@@ -123,18 +131,27 @@ impl Planner {
         let is_spline = matches!(optimiser, Settings::Scp(_));
         let trajectory = choice.over(trajectory, is_spline).map_err(PlanError::ForSplines)?;
         let file = TaskFile { task, trajectory };
-        let problem = file.problem(document)?;
+        let is_mission = file.task.is_mission();
+        let mission = is_mission.then(|| file.task.mission(document)).transpose()?.map(Arc::new);
+        let problem = match &mission {
+            None => file.problem(document)?,
+            Some(mission) => file.trajectory.build(Arc::new(mission.ends.clone()), document)?,
+        };
         let other = match &problem {
             TaskProblem::Spline(problem, _) if !is_named => {
-                let table = file.trajectory.clone().with_family(FamilyName::SinePolynomial);
-                Some(table.build(problem.task().clone(), document)?)
+                Some(file.few_terms(problem.task().clone(), document)?)
             }
             _ => None,
         };
-        Ok(Self { document: document.clone(), file, problem, other, optimiser })
+        Ok(Self { document: document.clone(), file, problem, other, optimiser, mission })
     }
 
-    /// The task.
+    /// Whether the task takes several motions.
+    pub fn is_mission(&self) -> bool {
+        self.mission.is_some()
+    }
+
+    /// The task; of one of several motions from its start to its goal.
     pub fn task(&self) -> &Arc<Task> {
         self.problem.task()
     }
@@ -144,9 +161,24 @@ impl Planner {
         &self.file
     }
 
-    /// Searches, by at most `budget` evaluations.
+    /// Searches, by at most `budget` evaluations. Where the goal is the tool's, the motion ends in whichever of its branches is best
+    /// by a first look, and in the next one where it does not reach that. Of a task of several motions see
+    /// [`plan_mission`](Self::plan_mission).
     pub fn plan(&self, seed: u64, budget: u64, watch: &Watch) -> Result<Planned, PlanError> {
+        if self.is_mission() {
+            return Err(PlanError::Several);
+        }
         let search = Search { seed, budget, watch };
+        match &self.task().tool {
+            Some(tool) if tool.branches.len() > 1 => {
+                let tasks = tool.branches.iter().map(|joints| self.task().ending_with(joints));
+                Ok(self.plan_one_of(tasks.collect(), search)?.1)
+            }
+            _ => self.search(search),
+        }
+    }
+
+    fn search(&self, search: Search<'_>) -> Result<Planned, PlanError> {
         match &self.problem {
             TaskProblem::SinePolynomial(problem, boxes) => {
                 // Default settings name no formulation.
@@ -279,16 +311,20 @@ impl Search<'_> {
         Ok(Planned { walls: Some(walls), ..found })
     }
 
-    /// What the paper's family comes to, if it comes to anything.
-    fn other_family(self, problem: &TaskProblem) -> Option<OtherFamily> {
+    /// The best motion of the paper's family that `scp` finds from so many starts.
+    fn few_terms(self, problem: &TaskProblem, starts: usize) -> Option<Planned> {
         let TaskProblem::SinePolynomial(problem, boxes) = problem else { return None };
-        let terms = problem.family().terms();
         let formulated =
             Formulated::new(Formulation::TimeFree, Arc::new(problem.clone()), boxes).ok()?;
-        let scp = Scp { starts: NonZeroUsize::new(OTHER_STARTS), ..Scp::default() };
-        let found = self.best(&scp, &formulated, &formulated, boxes.duration[1]).ok()?;
+        let scp = Scp { starts: NonZeroUsize::new(starts), ..Scp::default() };
+        self.best(&scp, &formulated, &formulated, boxes.duration[1]).ok()
+    }
+
+    /// What the paper's family comes to, if it comes to anything.
+    fn other_family(self, problem: &TaskProblem) -> Option<OtherFamily> {
+        let found = self.few_terms(problem, OTHER_STARTS)?;
         (!found.interrupted).then(|| OtherFamily {
-            terms,
+            terms: found.problem.spec().terms().unwrap_or_default(),
             t_f: found.assessment.duration,
             residual_deg: found.assessment.residual().to_degrees(),
             status: found.reach,

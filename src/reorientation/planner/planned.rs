@@ -12,10 +12,11 @@ use crate::reorientation::family::FamilySpec;
 use crate::reorientation::fitness::Assessment;
 use crate::reorientation::json::{AssessmentJson, ExcursionsJson, ShapeJson};
 use crate::reorientation::reach::Reach;
+use crate::reorientation::robustness::{Robustness, RobustnessJson};
 use crate::search::{Failure, Oracle};
 
 /// What a search spent.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Spent {
     /// Costs that were asked for.
     pub evaluations: u64,
@@ -40,7 +41,7 @@ impl Spent {
         }
     }
 
-    fn and(self, more: Self) -> Self {
+    pub(super) fn and(self, more: Self) -> Self {
         Self {
             evaluations: self.evaluations + more.evaluations,
             linearisations: self.linearisations + more.linearisations,
@@ -123,6 +124,8 @@ pub struct PlannedJson<'a> {
     excursions: ExcursionsJson,
     #[serde(flatten)]
     shape: ShapeJson,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    uncertainty: Option<RobustnessJson>,
     sine_polynomial: Option<&'a OtherFamily>,
     interrupted: bool,
     #[serde(flatten)]
@@ -136,10 +139,18 @@ impl Planned {
         let spent = self.spent.and(other.spent);
         let interrupted = self.interrupted || other.interrupted;
         let failure = other.failure.clone().or(self.failure.clone());
-        let is_better = other.reach == Reach::Reached
-            || other.assessment.residual() < self.assessment.residual();
-        let found = if is_better { other } else { self };
+        let found = if other.is_better_than(&self) { other } else { self };
         Self { spent, interrupted, failure, ..found }
+    }
+
+    /// What becomes of it where the robot is not quite what its file says, if the task states how far that may be.
+    pub fn robustness(&self) -> Option<Robustness> {
+        Robustness::of(&*self.problem, &self.coefficients).ok().flatten()
+    }
+
+    /// Whether it reaches its goal or ends nearer to it.
+    pub(super) fn is_better_than(&self, other: &Self) -> bool {
+        self.reach == Reach::Reached || self.assessment.residual() < other.assessment.residual()
     }
 
     /// As JSON.
@@ -162,6 +173,7 @@ impl Planned {
                 &self.assessment.peaks,
             ),
             shape: ShapeJson::new(problem, &self.coefficients, self.assessment.duration),
+            uncertainty: self.robustness().map(|own| RobustnessJson::new(&own, problem.task())),
             sine_polynomial: self.other.as_ref(),
             interrupted: self.interrupted,
             spent: self.spent,

@@ -4,7 +4,7 @@ use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
 use super::base::{BasePath, Seen};
-use super::faults::{Fault, faults, on_the_way};
+use super::faults::{Fault, faults, of_tool, on_the_way};
 use crate::reorientation::excursions::Excursions;
 use crate::reorientation::motion::{JointMotion, Motion};
 use crate::task::Task;
@@ -132,6 +132,7 @@ impl<'a> Replayed<'a> {
         let mut faults = faults(task, &path, played.residual, &played.peaks, &extents);
         let excursions = Excursions::of(task, &sample(task, points, &base, LOOKS));
         faults.extend(on_the_way(&excursions.used));
+        faults.extend(of_tool(task, excursions.tool_miss.as_ref(), points.duration()));
         Self {
             task,
             points,

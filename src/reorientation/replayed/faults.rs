@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use serde::Serialize;
 
+use crate::inverse_kinematics::Miss;
 use crate::reorientation::excursions::{PathLimit, Used};
 use crate::robot::{Follow, JointKind};
 use crate::task::Task;
@@ -41,6 +42,10 @@ pub enum FaultKind {
     Wrapped,
     /// A limit on the way is broken.
     PathLimit,
+    /// The tool ends too far from its goal.
+    Tool,
+    /// The tool ends turned too far from its goal.
+    ToolTurn,
 }
 
 /// Something of a motion that is not as it should be. Angles in degrees, as for people.
@@ -128,7 +133,9 @@ pub(super) fn faults(
         (FaultKind::Start, points.positions(0), &task.start.joints, 0.0),
         (FaultKind::End, points.positions(points.count() - 1), &task.goal.joints, duration),
     ];
-    for (kind, found, expected, at) in ends {
+    // Where the goal is the tool's, joints may end anywhere that brings it there.
+    let stated = if task.tool.is_some() { 1 } else { 2 };
+    for (kind, found, expected, at) in ends.into_iter().take(stated) {
         let misses = found.iter().zip(expected).map(|(found, expected)| found - expected);
         let misses = joints.iter().zip(misses).filter(|(_, miss)| miss.abs() > SAME_POSITION);
         faults.extend(misses.map(|(joint, miss)| joint.fault(kind, 0, at, miss)));
@@ -173,6 +180,20 @@ pub(super) fn on_the_way(used: &[Used]) -> impl Iterator<Item = Fault> + '_ {
         points: None,
         limit: Some(used.limit),
     })
+}
+
+/// What the tool misses its goal by, beyond what the base's tolerance leaves it.
+pub(super) fn of_tool(task: &Task, miss: Option<&Miss>, at: f64) -> Vec<Fault> {
+    let (Some(goal), Some(miss)) = (&task.tool, miss) else { return Vec::new() };
+    let lever = goal.target.position.map_or(0.0, |position| position.norm());
+    let tolerance = task.goal_tolerance;
+    let fault =
+        |kind, by, unit| Fault { kind, joint: None, at, by, unit, points: None, limit: None };
+    let place = (miss.position > SAME_POSITION + tolerance * lever)
+        .then(|| fault(FaultKind::Tool, miss.position, "m"));
+    let turn = (miss.angle > SAME_POSITION + tolerance)
+        .then(|| fault(FaultKind::ToolTurn, miss.angle.to_degrees(), "°"));
+    place.into_iter().chain(turn).collect()
 }
 
 /// Joints that do not follow others as they have to, each where it is furthest from there.
@@ -257,7 +278,8 @@ fn wrapped(path: &PointPath<'_>, joints: &[Shown<'_>]) -> Vec<Fault> {
 impl FaultKind {
     /// Whether it breaks a limit or a range: jumps break limits, since no limit allows them.
     pub fn breaks_a_limit(self) -> bool {
-        !matches!(self, Self::Start | Self::End | Self::Goal | Self::Wrapped)
+        use FaultKind::{End, Goal, Start, Tool, ToolTurn, Wrapped};
+        !matches!(self, Start | End | Goal | Tool | ToolTurn | Wrapped)
     }
 }
 
@@ -272,6 +294,8 @@ impl std::fmt::Display for Fault {
             FaultKind::Start => write!(f, "{joint} starts {by:+.6}{unit} from the task's start"),
             FaultKind::End => write!(f, "{joint} ends {by:+.6}{unit} from the task's goal"),
             FaultKind::Goal => write!(f, "{joint} ends {by:.6}{unit} beyond the goal's tolerance"),
+            FaultKind::Tool => write!(f, "the tool ends {by:.6}{unit} from its goal"),
+            FaultKind::ToolTurn => write!(f, "the tool ends turned by {by:.6}{unit} from its goal"),
             FaultKind::RateLimit | FaultKind::AccelerationLimit | FaultKind::JerkLimit => {
                 let what = match kind {
                     FaultKind::RateLimit => "rate",

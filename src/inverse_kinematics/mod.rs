@@ -1,0 +1,141 @@
+//! Joint positions that bring the tool where it is to be while the base has a given attitude.
+//!
+//! No force acts from outside, so the system's centre of mass stays where it is, and with the base's attitude the joints tell where
+//! the tool is in inertial axes, too: that is the virtual manipulator of Vafa and Dubowsky (DOI 10.1177/027836499000900401).
+//! In base axes the tool's place is `p(q)` from the base's centre of mass and `p(q) − c(q)` from the system's.
+
+mod descent;
+mod system;
+
+use nalgebra::{Rotation3, Unit, UnitQuaternion, Vector3};
+
+use crate::robot::Robot;
+use descent::Descent;
+
+/// Where the tool is to be, in base axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToolTarget {
+    /// Where its origin is to be \[m\]; anywhere if nothing is said.
+    pub position: Option<Vector3<f64>>,
+    /// What positions are measured from.
+    pub origin: Origin,
+    /// How it is to be turned.
+    pub orientation: Orientation,
+}
+
+impl ToolTarget {
+    /// The same, turned in base axes.
+    #[must_use]
+    pub fn turned(&self, turn: &UnitQuaternion<f64>) -> Self {
+        let orientation = match &self.orientation {
+            Orientation::Any => Orientation::Any,
+            Orientation::Axis { tool, direction } => {
+                Orientation::Axis { tool: *tool, direction: turn * direction }
+            }
+            Orientation::Full(rotation) => Orientation::Full(turn.to_rotation_matrix() * rotation),
+        };
+        Self { position: self.position.map(|position| turn * position), orientation, ..*self }
+    }
+}
+
+/// What the tool's position is measured from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// The base's centre of mass.
+    Base,
+    /// The system's centre of mass.
+    System,
+}
+
+/// How the tool is to be turned.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Orientation {
+    /// In any way.
+    Any,
+    /// So that one of its axes points in a direction.
+    Axis {
+        /// The axis, in the tool's axes.
+        tool: Unit<Vector3<f64>>,
+        /// The direction, in base axes.
+        direction: Unit<Vector3<f64>>,
+    },
+    /// As this turns the tool's axes into base axes.
+    Full(Rotation3<f64>),
+}
+
+/// By how much the tool misses its target.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Miss {
+    /// Distance of the origins \[m\].
+    pub position: f64,
+    /// Angle of the turn, or between the axes, that is left \[rad\].
+    pub angle: f64,
+}
+
+/// Distances \[m\], as shares of the reach, and angles \[rad\] by which a solution may miss.
+const PRECISION: f64 = 1e-10;
+
+/// Random configurations that searches start from, and how many more where none of these has led to a solution.
+const STARTS: usize = 96;
+const MORE_STARTS: usize = 160;
+
+/// Solutions of which no joint differs by more \[rad or m\] are one.
+const SAME: f64 = 1e-3;
+
+/// How hard a redundant arm is pulled to the positions that it is to be near to, one after the other.
+const PULLS: [f64; 3] = [1e-2, 1e-4, 0.0];
+
+/// All joint positions \[rad or m\] that were found within the joints' ranges, nearest first; `near`, one position per joint, is what
+/// they are to be near to, and `efforts` is what a unit of each joint's way counts. An arm with joints to spare has a continuum of
+/// solutions, of which these are the ones nearest to `near` for themselves. Where none was found, the error is by how much the best
+/// attempt misses.
+///
+/// # Panics
+///
+/// Panics unless there is one of `near` and of `efforts` for each joint that moves.
+pub fn solve(
+    robot: &Robot,
+    target: &ToolTarget,
+    near: &[f64],
+    efforts: &[f64],
+) -> Result<Vec<Vec<f64>>, Miss> {
+    let descent = Descent::new(robot, target, near, efforts);
+    let mut solutions: Vec<Vec<f64>> = Vec::new();
+    let mut best: Option<(f64, Miss)> = None;
+    let starts = std::iter::once(near.to_vec()).chain(robot.random_configurations());
+    for (i, mut positions) in starts.take(1 + STARTS + MORE_STARTS).enumerate() {
+        if i > STARTS && !solutions.is_empty() {
+            break;
+        }
+        let error = descent.run(&mut positions, 0.0);
+        if error > PRECISION {
+            let miss = miss(robot, target, &positions);
+            if best.is_none_or(|(least, _)| error < least) {
+                best = Some((error, miss));
+            }
+            continue;
+        }
+        let positions = descent.nearest(positions);
+        let is_known =
+            |known: &Vec<f64>| known.iter().zip(&positions).all(|(a, b)| (a - b).abs() < SAME);
+        if !solutions.iter().any(is_known) {
+            solutions.push(positions);
+        }
+    }
+    if solutions.is_empty() {
+        return Err(best.map(|(_, miss)| miss).unwrap_or_default());
+    }
+    solutions.sort_by(|a, b| descent.way(a).total_cmp(&descent.way(b)));
+    Ok(solutions)
+}
+
+/// By how much the tool misses its target with these joint positions \[rad or m\].
+///
+/// # Panics
+///
+/// Panics when there are more or fewer positions than joints that move.
+pub fn miss(robot: &Robot, target: &ToolTarget, positions: &[f64]) -> Miss {
+    let place = system::Place::of(robot, positions);
+    let off = place.error(target);
+    Miss { position: off.position.norm(), angle: off.angle }
+}

@@ -1,0 +1,289 @@
+//! Plans a task of several motions, one after the other.
+
+use nalgebra::UnitQuaternion;
+use serde::Serialize;
+
+use super::planned::{Asked, Planned, PlannedJson, Spent};
+use super::{PlanError, Planner, Search};
+use crate::reorientation::excursions::PathLimit;
+use crate::reorientation::export::intervals;
+use crate::reorientation::json::{ExcursionsJson, PeaksJson};
+use crate::reorientation::motion::Motion;
+use crate::reorientation::reach::Reach;
+use crate::reorientation::replayed::Replayed;
+use crate::search::Watch;
+use crate::straight::StraightPath;
+use crate::task::{Posture, Task};
+use crate::trajectory::Points;
+
+/// What came of a task of several motions.
+#[derive(Debug, Clone)]
+pub struct PlannedMission {
+    /// The task from its start to its goal.
+    pub ends: Task,
+    /// The motions, one after the other.
+    pub legs: Vec<PlannedLeg>,
+}
+
+/// One of several motions.
+#[derive(Debug, Clone)]
+pub struct PlannedLeg {
+    /// What it is for.
+    pub name: String,
+    /// The motion.
+    pub motion: LegMotion,
+}
+
+/// A motion.
+#[derive(Debug, Clone)]
+pub enum LegMotion {
+    /// One that was searched.
+    Planned(Box<Planned>),
+    /// The tool goes along a straight line.
+    Straight {
+        /// From where to where.
+        task: Box<Task>,
+        /// The way of the joints.
+        points: Points,
+        /// How far the tool goes \[m\].
+        distance: f64,
+    },
+}
+
+/// How finely a straight motion is sampled for other tools.
+const STRAIGHT_INTERVALS: usize = 100;
+
+impl Planner {
+    /// Plans one motion after the other, each by at most an equal share of `budget` evaluations. Each starts where the one before has
+    /// ended. Where one does not reach its goal, the rest is left out.
+    pub fn plan_mission(
+        &self,
+        seed: u64,
+        budget: u64,
+        watch: &Watch,
+    ) -> Result<PlannedMission, PlanError> {
+        let mission = self.mission.as_ref().ok_or(PlanError::Several)?;
+        let ends = mission.ends.clone();
+        let budget = (budget / mission.stops() as u64).max(1);
+        let mut at = ends.start.clone();
+        let mut legs: Vec<PlannedLeg> = Vec::new();
+        let mut go = |name: String, motion: LegMotion, at: &mut Posture| {
+            *at = motion.end();
+            legs.push(PlannedLeg { name, motion });
+        };
+        if let Some(path) = mission.leaving_start()? {
+            let task = straight_task(&ends, &at, &path);
+            go("retreat from start".to_owned(), straight(task, &path), &mut at);
+        }
+        for stop in 0..mission.stops() {
+            let name = mission.name(stop);
+            let choices = mission.legs(stop, &at)?;
+            let search = Search { seed, budget, watch };
+            let is_there = choices.iter().position(|leg| leg.task.already_there().is_some());
+            let chosen = match is_there {
+                Some(leg) => leg,
+                None => {
+                    let tasks = choices.iter().map(|leg| leg.task.clone()).collect();
+                    let (leg, found) = self.plan_one_of(tasks, search)?;
+                    let is_over = found.interrupted || found.reach != Reach::Reached;
+                    go(name.to_owned(), LegMotion::Planned(Box::new(found)), &mut at);
+                    if is_over {
+                        break;
+                    }
+                    leg
+                }
+            };
+            if let Some((path, task)) = &choices[chosen].approach {
+                let task = Task { start: at.clone(), ..task.clone() };
+                go(format!("approach of {name}"), straight(task, path), &mut at);
+            }
+            if let Some(path) = mission.leaving(stop, &at)? {
+                let task = straight_task(&ends, &at, &path);
+                go(format!("retreat from {name}"), straight(task, &path), &mut at);
+            }
+        }
+        Ok(PlannedMission { ends, legs })
+    }
+}
+
+fn straight_task(ends: &Task, from: &Posture, path: &StraightPath) -> Task {
+    let [_, joints] = path.ends();
+    let goal = Posture { joints: joints.to_vec(), base: path.base[1] };
+    Task { start: from.clone(), goal, tool: None, ..ends.clone() }
+}
+
+/// The straight motion in the shortest time within all limits.
+fn straight(task: Task, path: &StraightPath) -> LegMotion {
+    let points = path.timed(&task.limits);
+    let used = Replayed::new(&task, &points).excursions.used;
+    // Speeds are as one over the duration, torques as one over its square.
+    let stretch = used.iter().map(|used| match used.limit {
+        PathLimit::BaseRate | PathLimit::ToolSpeed => used.share,
+        PathLimit::Torque => used.share.sqrt(),
+        PathLimit::BaseTurn | PathLimit::BaseCone | PathLimit::Clearance => 1.0,
+    });
+    let stretch = stretch.fold(1.0, f64::max);
+    let points = if stretch > 1.0 { path.points(points.duration() * stretch) } else { points };
+    LegMotion::Straight { task: Box::new(task), points, distance: path.distance() }
+}
+
+impl LegMotion {
+    /// From where to where it goes, as it was meant to.
+    pub fn task(&self) -> &Task {
+        match self {
+            Self::Planned(found) => found.problem.task(),
+            Self::Straight { task, .. } => task,
+        }
+    }
+
+    /// How long it takes \[s\].
+    pub fn duration(&self) -> f64 {
+        match self {
+            Self::Planned(found) => found.assessment.duration,
+            Self::Straight { points, .. } => points.duration(),
+        }
+    }
+
+    /// Whether it reaches its goal and keeps all limits and ranges.
+    pub fn is_reached(&self) -> bool {
+        match self {
+            Self::Planned(found) => found.reach == Reach::Reached,
+            Self::Straight { task, points, .. } => Replayed::new(task, points).is_as_asked(),
+        }
+    }
+
+    /// The motion at equally spaced times.
+    pub fn sample(&self, intervals: usize) -> Motion {
+        match self {
+            Self::Planned(found) => {
+                found.problem.sample(&found.coefficients, found.assessment.duration, intervals)
+            }
+            Self::Straight { task, points, .. } => Replayed::new(task, points).sample(intervals),
+        }
+    }
+
+    /// In how many intervals other tools are given it.
+    pub fn intervals(&self) -> usize {
+        match self {
+            Self::Planned(found) => intervals(found.problem.spec()),
+            Self::Straight { .. } => STRAIGHT_INTERVALS,
+        }
+    }
+
+    fn end(&self) -> Posture {
+        let base = self.sample(1).base;
+        let base = base.last().copied().unwrap_or_else(UnitQuaternion::identity);
+        Posture { joints: self.task().goal.joints.clone(), base }
+    }
+}
+
+impl PlannedMission {
+    /// How long all takes \[s\].
+    pub fn duration(&self) -> f64 {
+        self.legs.iter().map(|leg| leg.motion.duration()).sum()
+    }
+
+    /// Whether all motions were planned, reach their goals and keep all limits and ranges.
+    pub fn is_reached(&self) -> bool {
+        let last = self.legs.last().map(|leg| leg.motion.task().goal.joints.as_slice());
+        let ends = self.ends.tool.is_some() || last == Some(&self.ends.goal.joints);
+        ends && self.legs.iter().all(|leg| leg.motion.is_reached())
+    }
+
+    /// Whether the user ended the search.
+    pub fn is_interrupted(&self) -> bool {
+        self.legs.iter().any(|leg| match &leg.motion {
+            LegMotion::Planned(found) => found.interrupted,
+            LegMotion::Straight { .. } => false,
+        })
+    }
+
+    /// All motions as one; `intervals` tells in how many each is cut.
+    pub fn sample(&self, intervals: impl Fn(&LegMotion) -> usize) -> Motion {
+        let mut whole: Option<Motion> = None;
+        for leg in &self.legs {
+            let next = leg.motion.sample(intervals(&leg.motion));
+            match &mut whole {
+                None => whole = Some(next),
+                Some(whole) => whole.go_on(next),
+            }
+        }
+        whole.unwrap_or_else(|| Motion { time: Vec::new(), joints: Vec::new(), base: Vec::new() })
+    }
+
+    /// As JSON.
+    pub fn json<'a>(&'a self, asked: &Asked<'a>) -> MissionJson<'a> {
+        let legs = self.legs.iter().map(|leg| leg.json(asked)).collect();
+        let spent = self.legs.iter().fold(Spent::default(), |all, leg| match &leg.motion {
+            LegMotion::Planned(found) => all.and(found.spent),
+            LegMotion::Straight { .. } => all,
+        });
+        let end = self.legs.last().map(|leg| leg.motion.end().base);
+        MissionJson {
+            asked: asked.clone(),
+            reached: self.is_reached(),
+            t_f: self.duration(),
+            residual_deg: end.map(|end| end.angle_to(&self.ends.goal.base).to_degrees()),
+            interrupted: self.is_interrupted(),
+            legs,
+            spent,
+        }
+    }
+}
+
+/// The object that `plan --json` prints of a task of several motions.
+#[derive(Debug, Serialize)]
+pub struct MissionJson<'a> {
+    #[serde(flatten)]
+    asked: Asked<'a>,
+    reached: bool,
+    t_f: f64,
+    residual_deg: Option<f64>,
+    interrupted: bool,
+    legs: Vec<LegJson<'a>>,
+    #[serde(flatten)]
+    spent: Spent,
+}
+
+#[derive(Debug, Serialize)]
+struct LegJson<'a> {
+    leg: &'a str,
+    #[serde(flatten)]
+    motion: LegMotionJson<'a>,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+enum LegMotionJson<'a> {
+    Planned(Box<PlannedJson<'a>>),
+    Straight {
+        t_f: f64,
+        distance_m: f64,
+        reached: bool,
+        peaks: PeaksJson,
+        #[serde(flatten)]
+        excursions: ExcursionsJson,
+    },
+}
+
+impl PlannedLeg {
+    fn json<'a>(&'a self, asked: &Asked<'a>) -> LegJson<'a> {
+        let motion = match &self.motion {
+            LegMotion::Planned(found) => {
+                LegMotionJson::Planned(Box::new(found.json(asked.clone())))
+            }
+            LegMotion::Straight { task, points, distance } => {
+                let replayed = Replayed::new(task, points);
+                let peaks = &replayed.played.peaks;
+                LegMotionJson::Straight {
+                    t_f: points.duration(),
+                    distance_m: *distance,
+                    reached: replayed.is_as_asked(),
+                    peaks: PeaksJson::new(peaks, &task.robot),
+                    excursions: ExcursionsJson::new(&replayed.excursions, task, peaks),
+                }
+            }
+        };
+        LegJson { leg: &self.name, motion }
+    }
+}

@@ -1,0 +1,261 @@
+//! Tasks of several motions, one after the other: a robot comes to rest at every stop.
+
+use std::ops::Range;
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::file::{TaskTable, efforts};
+use super::reader::Reader;
+use super::tool_goal::ToolTable;
+use super::{Posture, Task};
+use crate::input::{Document, InputError};
+use crate::straight::{Straight, StraightError, StraightPath};
+
+/// A task of several motions.
+#[derive(Debug, Clone)]
+pub struct Mission {
+    document: Document,
+    /// From its start to its goal, whatever lies between.
+    pub ends: Task,
+    /// How the tool leaves the start.
+    retreat: Option<(Straight, Range<usize>)>,
+    stops: Vec<Stop>,
+}
+
+/// Where the robot comes to rest.
+#[derive(Debug, Clone)]
+struct Stop {
+    name: String,
+    place: Place,
+    base: UnitQuaternion<f64>,
+    span: Range<usize>,
+}
+
+#[derive(Debug, Clone)]
+enum Place {
+    /// The joints' positions \[rad or m\].
+    Joints(Vec<f64>),
+    Tool(ToolTable),
+    /// Where the joints are before.
+    Stay,
+}
+
+/// One way to do a leg of a mission.
+#[derive(Debug, Clone)]
+pub struct Leg {
+    /// The motion to be planned.
+    pub task: Task,
+    /// How the tool comes straight to its goal after that, from where that motion ends.
+    pub approach: Option<(StraightPath, Task)>,
+}
+
+impl TaskTable {
+    /// Whether it takes several motions, and if so where the file says so.
+    fn several(&self) -> Option<(&'static str, Range<usize>)> {
+        let tool = self.goal.tool.as_ref();
+        let straight = tool.filter(|tool| tool.get_ref().straights().iter().any(Option::is_some));
+        let retreat = self.start.retreat_m.as_ref();
+        let cycles = self.cycles.as_ref();
+        (!self.via.is_empty())
+            .then_some(("via", 0..0))
+            .or_else(|| straight.map(|tool| ("approach_m", tool.span())))
+            .or_else(|| retreat.map(|retreat| ("retreat_m", retreat.span())))
+            .or_else(|| cycles.map(|cycles| ("cycles", cycles.span())))
+    }
+
+    /// Whether it takes several motions.
+    pub fn is_mission(&self) -> bool {
+        self.several().is_some()
+    }
+
+    pub(super) fn check_single(&self, document: &Document) -> Result<(), InputError> {
+        let Some((key, span)) = self.several() else { return Ok(()) };
+        let message =
+            format!("found `{key}`: a task of several motions is for `plan` and `replay`");
+        let help = "`[[sweep.pose]]` races each of several motions".to_owned();
+        Err(document.error_at(span, message, Some(help)))
+    }
+
+    /// The task, of as many motions as it takes.
+    pub fn mission(&self, document: &Document) -> Result<Mission, InputError> {
+        let ends = self.build_ends(document)?;
+        let reader = Reader { document, robot: &ends.robot };
+        let mut stops = Vec::new();
+        for (number, via) in (1..).zip(&self.via) {
+            let name = format!("via {number}");
+            let base = via.base().unwrap_or(ends.goal.base);
+            let (place, span) = match (&via.tool, via.joints_span()) {
+                (Some(tool), None) => (Place::Tool(tool.get_ref().clone()), tool.span()),
+                (None, Some(span)) => (Place::Joints(reader.joints(via)?), span),
+                (None, None) => (Place::Stay, 0..0),
+                (Some(_), Some(span)) => {
+                    let message =
+                        "found both `tool` and the joints' positions, expected one of them";
+                    return Err(document.error_at(span, message, None));
+                }
+            };
+            stops.push(Stop { name, place, base, span });
+        }
+        if let Some(cycles) = &self.cycles {
+            if !self.via.is_empty() {
+                let message = "found both `cycles` and `via`, expected one of them";
+                return Err(document.error_at(cycles.span(), message, None));
+            }
+            let count = cycles.get_ref().0.get();
+            let turn = (ends.start.base.inverse() * ends.goal.base).scaled_axis();
+            stops.extend((1..count).map(|cycle| {
+                let share = turn * (cycle as f64 / count as f64);
+                let base = ends.start.base * UnitQuaternion::from_scaled_axis(share);
+                let place = Place::Joints(ends.start.joints.clone());
+                Stop { name: format!("cycle {cycle}"), place, base, span: cycles.span() }
+            }));
+        }
+        let (place, span) = match &self.goal.tool {
+            Some(tool) => (Place::Tool(tool.get_ref().clone()), tool.span()),
+            None => (Place::Joints(ends.goal.joints.clone()), 0..0),
+        };
+        if let Place::Tool(tool) = &place {
+            if tool.straights()[1].is_some() {
+                let message = "found `retreat_m` at the goal, expected the goal to be the end";
+                let help = "a `[[task.via]]` may be left straight back".to_owned();
+                return Err(document.error_at(span, message, Some(help)));
+            }
+        }
+        stops.push(Stop { name: "goal".to_owned(), place, base: ends.goal.base, span });
+        let retreat = self.start.retreat_m.as_ref().map(|retreat| {
+            let keeps_orientation = ends.robot.leading_count() >= 6;
+            let (direction, distance) = (-Vector3::z(), retreat.get_ref().0);
+            (Straight { direction, distance, keeps_orientation }, retreat.span())
+        });
+        let mission = Mission { document: document.clone(), ends, retreat, stops };
+        // What cannot be reached is told before anything is planned.
+        let mut before = mission.ends.start.clone();
+        for stop in 0..mission.stops.len() {
+            let legs = mission.legs(stop, &before)?;
+            before = legs[0].end();
+        }
+        Ok(mission)
+    }
+}
+
+impl Leg {
+    /// Where it ends if all goes as planned.
+    pub fn end(&self) -> Posture {
+        match &self.approach {
+            None => self.task.goal.clone(),
+            Some((_, task)) => task.goal.clone(),
+        }
+    }
+}
+
+impl Mission {
+    /// How many stops there are.
+    pub fn stops(&self) -> usize {
+        self.stops.len()
+    }
+
+    /// What a stop is called.
+    pub fn name(&self, stop: usize) -> &str {
+        &self.stops[stop].name
+    }
+
+    /// How the tool leaves the start, straight back, if it does.
+    pub fn leaving_start(&self) -> Result<Option<StraightPath>, InputError> {
+        let Some((straight, span)) = &self.retreat else { return Ok(None) };
+        self.straight(straight, &self.ends.start, span, "retreat_m").map(Some)
+    }
+
+    /// How it leaves a stop.
+    pub fn leaving(&self, stop: usize, from: &Posture) -> Result<Option<StraightPath>, InputError> {
+        let Stop { place, span, .. } = &self.stops[stop];
+        let Place::Tool(tool) = place else { return Ok(None) };
+        let [_, Some(straight)] = tool.straights() else { return Ok(None) };
+        self.straight(&straight, from, span, "retreat_m").map(Some)
+    }
+
+    fn straight(
+        &self,
+        straight: &Straight,
+        from: &Posture,
+        span: &Range<usize>,
+        key: &str,
+    ) -> Result<StraightPath, InputError> {
+        let path = straight.path(&self.ends.robot, &from.joints, from.base);
+        path.map_err(|error| self.blocked(&error, span, key))
+    }
+
+    fn blocked(&self, error: &StraightError, span: &Range<usize>, key: &str) -> InputError {
+        self.document.error_at(span.clone(), format!("`{key}`: {error}"), None)
+    }
+
+    /// The ways to come to a stop, the nearest first.
+    pub fn legs(&self, stop: usize, from: &Posture) -> Result<Vec<Leg>, InputError> {
+        let Stop { place, base, span, name } = &self.stops[stop];
+        let failed = |message: String| {
+            self.document.error_at(span.clone(), format!("{name}: {message}"), None)
+        };
+        let to = |joints: &[f64], base: UnitQuaternion<f64>| Task {
+            start: from.clone(),
+            goal: Posture { joints: joints.to_vec(), base },
+            tool: None,
+            ..self.ends.clone()
+        };
+        let (tasks, approach) = match place {
+            Place::Joints(joints) => (vec![to(joints, *base)], None),
+            Place::Stay => (vec![to(&from.joints, *base)], None),
+            Place::Tool(tool) => {
+                let inertial = self.ends.start.base_position(&self.ends.robot);
+                let efforts = efforts(&self.ends.limits.0);
+                let goal = tool.build(&self.ends.robot, inertial, base, &from.joints, &efforts);
+                let goal = goal.map_err(failed)?;
+                let chosen = tool.branch();
+                let count = goal.branches.len();
+                if let Some(branch) = chosen.filter(|branch| *branch > count) {
+                    return Err(failed(format!(
+                        "found `branch = {branch}`, expected one of 1 to {count}"
+                    )));
+                }
+                let is_chosen = |i: &usize| chosen.is_none_or(|branch| branch == i + 1);
+                let tasks = (0..count).filter(is_chosen).map(|i| {
+                    let task = to(&goal.branches[i], *base);
+                    Task { tool: Some(goal.clone()), ..task }
+                });
+                (tasks.collect(), tool.straights()[0].clone())
+            }
+        };
+        let mut refused = None;
+        let mut legs = Vec::new();
+        for task in tasks {
+            let leg = match &approach {
+                None => Leg { task, approach: None },
+                Some(straight) => match self.approached(task, straight) {
+                    Ok(leg) => leg,
+                    Err(error) => {
+                        refused.get_or_insert_with(|| self.blocked(&error, span, "approach_m"));
+                        continue;
+                    }
+                },
+            };
+            match leg.task.impossible() {
+                None => legs.push(leg),
+                Some(impossible) => {
+                    refused.get_or_insert_with(|| failed(impossible.reason));
+                }
+            }
+        }
+        match refused {
+            Some(refused) if legs.is_empty() => Err(refused),
+            _ => Ok(legs),
+        }
+    }
+
+    /// A leg whose end is approached straight: the motion before ends where the way back from there leads.
+    fn approached(&self, task: Task, straight: &Straight) -> Result<Leg, StraightError> {
+        let back = straight.path(&task.robot, &task.goal.joints, task.goal.base)?;
+        let [_, joints] = back.ends();
+        let before = Posture { joints: joints.to_vec(), base: back.base[1] };
+        let approach = Task { start: before.clone(), ..task.clone() };
+        let task = Task { goal: before, tool: None, ..task };
+        Ok(Leg { task, approach: Some((back.reversed(), approach)) })
+    }
+}

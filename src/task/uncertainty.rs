@@ -1,0 +1,165 @@
+//! What is not known exactly: masses, inertias, where the arm is mounted, how well joints follow their paths.
+
+use std::num::NonZeroUsize;
+
+use nalgebra::Vector3;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng as _, SeedableRng};
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::joints::Limit;
+use super::reader::Reader;
+use super::{Posture, Task};
+use crate::input::{Fraction, InputError, NonNegative, count};
+use crate::robot::{Robot, RobotError};
+
+/// The `[task.uncertainty]` table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default, expecting = "a table")]
+pub(super) struct UncertaintyTable {
+    mass: Fraction,
+    inertia: Fraction,
+    mount_m: NonNegative,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    joint_deg: Option<Spanned<Limit>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    joint: Option<Spanned<Limit>>,
+    #[serde(deserialize_with = "count::<100_000, _, _>")]
+    samples: NonZeroUsize,
+    seed: u64,
+}
+
+/// How far the robot may be from what its file says, each part for itself and as likely by any amount up to that.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Uncertainty {
+    /// Share of each body's mass.
+    pub mass: f64,
+    /// Share of each body's inertia, beside what the mass changes of it.
+    pub inertia: f64,
+    /// How far the arm may be mounted from where it should, along each base axis \[m\].
+    pub mount: f64,
+    /// By how much each joint may be off its path all the way \[rad or m\].
+    pub joints: Vec<f64>,
+    /// How many robots are drawn, and the seed of the random numbers.
+    pub samples: usize,
+    /// The seed of the random numbers.
+    pub seed: u64,
+}
+
+/// One thing that is not known exactly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unknown {
+    /// A body's mass; the base's as `None`.
+    Mass(Option<usize>),
+    /// A body's inertia.
+    Inertia(Option<usize>),
+    /// Where the arm is mounted, along one of the base's axes.
+    Mount(usize),
+    /// Where a joint is.
+    Joint(usize),
+}
+
+impl Default for UncertaintyTable {
+    fn default() -> Self {
+        let none = Fraction(0.0);
+        let samples = NonZeroUsize::MIN.saturating_add(255);
+        let (joint_deg, joint, seed) = (None, None, 1);
+        Self {
+            mass: none,
+            inertia: none,
+            mount_m: NonNegative(0.0),
+            joint_deg,
+            joint,
+            samples,
+            seed,
+        }
+    }
+}
+
+impl UncertaintyTable {
+    pub(super) fn build(&self, reader: &Reader<'_>) -> Result<Uncertainty, InputError> {
+        let pair = [self.joint_deg.as_ref(), self.joint.as_ref()];
+        let joints = if pair.iter().all(Option::is_none) {
+            vec![0.0; reader.robot.joint_count()]
+        } else {
+            reader.positive(pair, ["joint_deg", "joint"])?
+        };
+        Ok(Uncertainty {
+            mass: self.mass.0,
+            inertia: self.inertia.0,
+            mount: self.mount_m.0,
+            joints,
+            samples: self.samples.get(),
+            seed: self.seed,
+        })
+    }
+}
+
+impl Uncertainty {
+    /// All that is not known exactly of a robot.
+    pub fn unknowns(&self, robot: &Robot) -> Vec<Unknown> {
+        let bodies = || robot.heavy_bodies().map(|(body, _)| body);
+        let masses = bodies().filter(|_| self.mass > 0.0).map(Unknown::Mass);
+        let inertias = bodies().filter(|_| self.inertia > 0.0).map(Unknown::Inertia);
+        let mount = (0..3).filter(|_| self.mount > 0.0).map(Unknown::Mount);
+        let joints = robot.leading().filter(|joint| self.joints[*joint] > 0.0).map(Unknown::Joint);
+        masses.chain(inertias).chain(mount).chain(joints).collect()
+    }
+
+    /// The task as it is where unknowns are off by these shares of what they may be off by, −1 to 1.
+    pub fn varied(&self, task: &Task, shares: &[(Unknown, f64)]) -> Result<Task, RobotError> {
+        let share = |unknown| {
+            let own = shares.iter().filter(|(other, _)| *other == unknown);
+            own.map(|(_, share)| share).sum::<f64>()
+        };
+        let factors = |body| {
+            let mass = self.mass * share(Unknown::Mass(body));
+            [1.0 + mass, 1.0 + self.inertia * share(Unknown::Inertia(body))]
+        };
+        let shift = Vector3::from_fn(|axis, _| self.mount * share(Unknown::Mount(axis)));
+        let moved = |posture: &Posture| {
+            let mut joints = posture.joints.clone();
+            for (joint, at) in joints.iter_mut().enumerate() {
+                *at += self.joints[joint] * share(Unknown::Joint(joint));
+            }
+            task.robot.place_followers(&mut joints);
+            Posture { joints, base: posture.base }
+        };
+        Ok(Task {
+            robot: task.robot.varied(factors, shift)?.into(),
+            start: moved(&task.start),
+            goal: moved(&task.goal),
+            ..task.clone()
+        })
+    }
+
+    /// Tasks as they may be, each unknown drawn for itself.
+    pub fn draw(&self, task: &Task) -> Result<Vec<Task>, RobotError> {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        let unknowns = self.unknowns(&task.robot);
+        let draw = |_| {
+            let mut share = || (random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+            let shares: Vec<_> = unknowns.iter().map(|unknown| (*unknown, share())).collect();
+            self.varied(task, &shares)
+        };
+        (0..self.samples).map(draw).collect()
+    }
+}
+
+impl Unknown {
+    /// What it is called.
+    pub fn name(self, robot: &Robot) -> String {
+        let body =
+            |body: Option<usize>| body.map_or("base", |link| robot.links()[link].name.as_str());
+        match self {
+            Self::Mass(of) => format!("mass of {}", body(of)),
+            Self::Inertia(of) => format!("inertia of {}", body(of)),
+            Self::Mount(axis) => format!("mount along {}", ["x", "y", "z"][axis]),
+            Self::Joint(joint) => {
+                let name = robot.joints().nth(joint).map_or("", |joint| joint.name);
+                format!("offset of {name}")
+            }
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Tasks of several motions, and the tool on straight lines.
+
+use std::f64::consts::PI;
+
+use driftless::input::Document;
+use driftless::optimiser::Settings;
+use driftless::posture::Posture;
+use driftless::reorientation::{
+    FamilyChoice, FamilyName, LegMotion, PlannedMission, Planner, TaskFile,
+};
+use driftless::robot::Robot;
+use driftless::search::Watch;
+use driftless::straight::{Straight, StraightError};
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Where the tool is in inertial axes from the system's centre of mass, and where its third axis points, by [`Posture`], which
+/// pictures are drawn with.
+fn tool(
+    robot: &Robot,
+    joints: &[f64],
+    base: UnitQuaternion<f64>,
+) -> (Vector3<f64>, [Vector3<f64>; 2]) {
+    let posture = Posture::of(robot, joints, base);
+    let place = |local: [f64; 3]| base * Vector3::from(local);
+    let position = Vector3::from(posture.position) + place(*posture.origins.last().unwrap());
+    (position, [posture.jaw, *posture.axes.last().unwrap()].map(place))
+}
+
+fn planned(text: &str) -> PlannedMission {
+    let document = Document::embedded("mission.toml", text);
+    // Two terms are searched in a moment.
+    let choice = FamilyChoice { family: Some(FamilyName::SinePolynomial), ..Default::default() };
+    let scp = Settings::by_name("scp").unwrap();
+    let planner = Planner::read(&document, choice, scp).unwrap();
+    assert!(planner.is_mission());
+    planner.plan_mission(1, 100_000, &Watch::new()).unwrap()
+}
+
+fn refused(text: &str) -> String {
+    let document = Document::embedded("mission.toml", text);
+    let table = TaskFile::read(&document).unwrap().task;
+    table.mission(&document).unwrap_err().to_string()
+}
+
+/// The tool's way, worked out from the joints and from the base that answers them, is the line; the base comes out as planned.
+#[test]
+fn lines_are_straight_in_inertial_space() {
+    for (robot, start) in [
+        ("xiao2023", [10.0, 30.0, 45.0, -20.0, -25.0, 40.0].as_slice()),
+        ("ur5e", &[10.0, -60.0, 80.0, -70.0, -60.0, 20.0]),
+        ("panda", &[0.0, -30.0, 10.0, -110.0, 5.0, 95.0, 30.0]),
+        ("canadarm2", &[10.0, 20.0, -30.0, 80.0, -50.0, 20.0, 15.0]),
+    ] {
+        let robot = Robot::load(robot).unwrap();
+        let joints: Vec<f64> = start.iter().map(|angle| angle * PI / 180.0).collect();
+        let base = UnitQuaternion::from_euler_angles(0.1, -0.2, 0.3);
+        let straight = Straight {
+            direction: Vector3::new(0.3, -0.1, -1.0),
+            distance: 0.12,
+            keeps_orientation: true,
+        };
+        let path = straight.path(&robot, &joints, base).unwrap();
+        let (from, axes) = tool(&robot, &joints, base);
+        let along = (axes[0] * 0.3 - axes[1].cross(&axes[0]) * 0.1 - axes[1]).normalize();
+        let [_, end] = path.ends();
+        let (to, turned) = tool(&robot, end, path.base[1]);
+        assert!((to - from - along * 0.12).norm() < 1e-9, "{}: {}", robot.name(), to - from);
+        assert!((turned[0] - axes[0]).norm() + (turned[1] - axes[1]).norm() < 1e-9);
+
+        let back = path.reversed();
+        assert_eq!(back.ends(), [path.ends()[1], path.ends()[0]]);
+        assert_eq!(back.base, [path.base[1], path.base[0]]);
+    }
+}
+
+#[test]
+fn lines_that_joints_cannot_follow_are_refused() {
+    let robot = Robot::load("ur5e").unwrap();
+    let straight = Straight { direction: -Vector3::z(), distance: 5.0, keeps_orientation: true };
+    let joints = [0.2, -1.0, 1.4, -1.2, -1.0, 0.3];
+    let error = straight.path(&robot, &joints, UnitQuaternion::identity()).unwrap_err();
+    assert!(matches!(error, StraightError::Blocked(at) | StraightError::Range(_, at) if at < 5.0));
+}
+
+const MISSION: &str = r#"
+[task]
+robot = "xiao2023"
+[task.start]
+retreat_m = 0.05
+[[task.via]]
+tool = { position_m = [1.2, 0.3, 0.9], zyx_deg = [10, 20, 30], approach_m = 0.1, retreat_m = 0.08 }
+base_zyx_deg = [1, 2, 3]
+[[task.via]]
+joints_deg = [20, 40, 60, -20, -25, 40]
+[[task.via]]
+base_zyx_deg = [2, 2, 2]
+[task.goal]
+joints_deg = [40, 60, 90, -10, -30, 60]
+"#;
+
+/// Legs begin where the ones before have ended, at rest, and the tool comes to its place along the line.
+#[test]
+fn motions_follow_each_other() {
+    let found = planned(MISSION);
+    let names: Vec<&str> = found.legs.iter().map(|leg| leg.name.as_str()).collect();
+    let expected = [
+        "retreat from start",
+        "via 1",
+        "approach of via 1",
+        "retreat from via 1",
+        "via 2",
+        "via 3",
+        "goal",
+    ];
+    assert_eq!(names, expected);
+    assert!(found.is_reached());
+    let robot = &found.ends.robot;
+    let origin = Posture::of(robot, &found.ends.start.joints, found.ends.start.base).position;
+    let end = |leg: usize| {
+        let motion = found.legs[leg].motion.sample(100);
+        let joints = motion.joints.iter().map(|joint| joint.derivatives[100][0]);
+        (joints.collect::<Vec<f64>>(), motion.base[100])
+    };
+    let (joints, base) = end(2);
+    let (place, axes) = tool(robot, &joints, base);
+    let wanted = Vector3::new(1.2, 0.3, 0.9) + Vector3::from(origin);
+    assert!((place - wanted).norm() < 1e-6, "{}", place - wanted);
+    let turned = UnitQuaternion::from_euler_angles(
+        30.0_f64.to_radians(),
+        20.0_f64.to_radians(),
+        10.0_f64.to_radians(),
+    );
+    assert!((turned * Vector3::x() - axes[0]).norm() < 1e-6);
+    let (before, base) = end(1);
+    let (place, _) = tool(robot, &before, base);
+    assert!((place - wanted + axes[1] * 0.1).norm() < 1e-6);
+    let zyx = |[yaw, pitch, roll]: [f64; 3]| {
+        let [yaw, pitch, roll] = [yaw, pitch, roll].map(f64::to_radians);
+        UnitQuaternion::from_euler_angles(roll, pitch, yaw)
+    };
+    for (leg, base) in [(2, [1.0, 2.0, 3.0]), (4, [0.0; 3]), (5, [2.0; 3]), (6, [0.0; 3])] {
+        assert!(end(leg).1.angle_to(&zyx(base)) < 2e-5, "{leg}");
+    }
+    assert!(end(5).0.iter().zip(&end(4).0).all(|(a, b)| (a - b).abs() < 1e-9));
+
+    let whole = found.sample(LegMotion::intervals);
+    let last = whole.time.last().unwrap();
+    assert!((last - found.duration()).abs() < 1e-9);
+    assert!(whole.time.is_sorted_by(|a, b| a < b));
+    let counts: usize = found.legs.iter().map(|leg| leg.motion.intervals()).sum();
+    assert_eq!(whole.time.len(), counts + 1);
+    assert!(whole.base.windows(2).all(|pair| pair[0].angle_to(&pair[1]) < 0.1));
+    for joint in &whole.joints {
+        let ends = [joint.derivatives.first(), joint.derivatives.last()];
+        assert!(ends.iter().all(|at| at.unwrap()[1].abs() < 1e-9));
+    }
+}
+
+/// A turn of the base in three equal parts, the joints back at their start after each.
+#[test]
+fn a_turn_can_be_divided() {
+    let text = "[task]\nrobot = \"ur5e\"\ncycles = 3\n[task.start]\nbase_zyx_deg = [9, 0, 0]\n";
+    let found = planned(text);
+    assert!(found.is_reached());
+    assert_eq!(found.legs.len(), 3);
+    for (leg, left) in found.legs.iter().zip([6.0, 3.0, 0.0]) {
+        let motion = leg.motion.sample(10);
+        let (roll, pitch, yaw) = motion.base[10].euler_angles();
+        let off = [roll, pitch, yaw - f64::to_radians(left)].map(f64::abs);
+        assert!(off.iter().all(|off| *off < 2e-5), "{off:?}");
+    }
+}
+
+#[test]
+fn mistakes_are_told() {
+    let expect = |text: &str, expected: &str| {
+        let found = refused(&format!("[task]\nrobot = \"ur5e\"\n{text}"));
+        assert!(found.contains(expected), "{found}\nexpected: {expected}");
+    };
+    expect("cycles = 2\n[[task.via]]\nbase_zyx_deg = [1, 2, 3]", "found both `cycles` and `via`");
+    let tool = "tool = { position_m = [0.6, 0.2, 0.9]";
+    expect(&format!("[task.goal]\n{tool}, retreat_m = 0.1 }}"), "found `retreat_m` at the goal");
+    expect("[task.goal]\nretreat_m = 0.1", "which is for the start");
+    expect(&format!("[task.goal]\n{tool}, approach_m = 3 }}"), "`approach_m`: ");
+    expect(
+        "[[task.via]]\ntool = { position_m = [9, 0, 0] }",
+        "via 1: the tool cannot be brought there",
+    );
+    expect(
+        &format!("[[task.via]]\n{tool} }}\njoints_deg = [0, 0, 0, 0, 0, 0]"),
+        "found both `tool`",
+    );
+    expect("[[task.via]]\njoints_deg = [0, 0, 0]", "found 3 values, expected 6");
+
+    let document =
+        Document::embedded("mission.toml", "[task]\n[[task.via]]\nbase_zyx_deg = [1, 2, 3]");
+    let table = TaskFile::read(&document).unwrap();
+    let single = table.problem(&document).unwrap_err().to_string();
+    assert!(single.contains("a task of several motions is for `plan` and `replay`"), "{single}");
+}
