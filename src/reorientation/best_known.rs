@@ -183,6 +183,7 @@ pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
         goal_tolerance: _,
         path,
         uncertainty: _,
+        robust,
     } = &**problem.task();
     let turn = start.base.inverse() * goal.base;
     let components = [turn.w, turn.i, turn.j, turn.k];
@@ -201,6 +202,9 @@ pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
     if let Some(path) = path.identity(robot) {
         // Cones stand in inertial axes.
         determinants["path"] = json!({ "limits": path, "start": start.base.coords.as_slice() });
+    }
+    if let Some(robust) = robust {
+        determinants["robust"] = robust.identity();
     }
     let spec = problem.spec();
     for (name, size) in

@@ -39,6 +39,7 @@ impl<F: Family> Reorientation<F> {
         }
         let mut linearisation = self.terms().time_free(self.base_error_pieces(&slopes), durations);
         linearisation.terms.extend(found);
+        linearisation.terms.extend(self.robust_term(coefficients));
         linearisation.with_violation(violation)
     }
 
@@ -60,6 +61,9 @@ impl<F: Family> Reorientation<F> {
             let (more, by) = pieces.slopes_over(duration);
             slopes += more;
             by_duration += by;
+        }
+        if let Some(term) = self.robust_term(coefficients) {
+            slopes += Linearisation::new(vec![term]).subgradient(coefficients.len()).slopes;
         }
         let peaks = self.family().peaks(&samples, coefficients);
         let curves: Vec<_> = self.curves(coefficients).collect();

@@ -245,14 +245,14 @@ fn closest(task: &Task, watched: &[Watched], highest: &[(f64, f64)]) -> Option<(
 }
 
 /// The largest sample, and where it is as a share of the way.
-fn highest_sample(samples: &[f64]) -> (f64, f64) {
+pub(super) fn highest_sample(samples: &[f64]) -> (f64, f64) {
     let highest = samples.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     let intervals = (samples.len().max(2) - 1) as f64;
     highest.map_or((f64::NEG_INFINITY, 0.0), |(at, height)| (*height, at as f64 / intervals))
 }
 
 /// The largest value, and where it is as a share of the way.
-fn peak(count: usize, value: impl Fn(usize) -> f64) -> (f64, f64) {
+pub(super) fn peak(count: usize, value: impl Fn(usize) -> f64) -> (f64, f64) {
     let values: Vec<f64> = (0..count).map(value).collect();
     let place = (0..count).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or_default();
     let intervals = (count.max(2) - 1) as f64;

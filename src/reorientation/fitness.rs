@@ -8,9 +8,10 @@ use nalgebra::UnitQuaternion;
 use super::accuracy::Accuracy;
 use super::measure::{Fitness, Given, Tables, Turn, Workspace};
 use super::path::{PathPeak, Sampled};
+use super::robust::Variants;
 use super::terms::{Terms, penalty};
 use crate::lanes::Width;
-use crate::search::Evaluation;
+use crate::search::{Evaluation, Term};
 use crate::task::{PathLimits, Task};
 use crate::trajectory::{Family, Peaks, SinePolynomial, excess, longest_asked, powers};
 
@@ -25,6 +26,7 @@ pub struct Reorientation<F: Family = SinePolynomial> {
     /// clones.
     fine: Arc<[OnceLock<Arc<Tables<F>>>; 2]>,
     width: Width,
+    variants: Option<Variants<F>>,
 }
 
 /// What is known of one motion.
@@ -83,7 +85,8 @@ impl<F: Family> Reorientation<F> {
             let _ = fine[0].set(tables.clone());
         }
         let (family, fine) = (Arc::new(family), Arc::new(fine));
-        Self { task, family, accuracy, tables, fine, width: Width::widest() }
+        let variants = Variants::of(&task, &*family, accuracy);
+        Self { task, family, accuracy, tables, fine, width: Width::widest(), variants }
     }
 
     /// The same problem, evaluated more or less finely. Tables for [`Accuracy::FINE`] are made once for all
@@ -110,12 +113,14 @@ impl<F: Family> Reorientation<F> {
     /// not at all between more.
     #[must_use]
     pub fn with_width(&self, width: Width) -> Self {
-        Self { width: width.min(Width::widest()), ..self.clone() }
+        let width = width.min(Width::widest());
+        let variants = self.variants.as_ref().map(|variants| variants.with_width(width));
+        Self { width, variants, ..self.clone() }
     }
 
-    /// The same problem with nothing asked for on the way.
+    /// The same problem with nothing asked for on the way, nor of robots other than the task's own.
     pub(super) fn relaxed(&self) -> Self {
-        let task = Task { path: PathLimits::default(), ..(*self.task).clone() };
+        let task = Task { path: PathLimits::default(), robust: None, ..(*self.task).clone() };
         Self::over(Arc::new(task), (*self.family).clone(), self.accuracy).with_width(self.width)
     }
 
@@ -195,7 +200,8 @@ impl<F: Family> Reorientation<F> {
         let beyond = range_excess + path_excess;
         let assessment = Assessment {
             cost: self.terms().cost(attitude_error, duration, &excess, beyond)
-                + Terms::turns(&self.task.path.turn_weights, &way.turns),
+                + Terms::turns(&self.task.path.turn_weights, &way.turns)
+                + self.robust_cost(coefficients),
             attitude_error,
             duration,
             excess,
@@ -233,8 +239,18 @@ impl<F: Family> Reorientation<F> {
         };
         let beyond = self.range_excess(&workspace.samples) + way.excess(duration);
         let cost = self.terms().cost(attitude_error, duration, &excess, beyond)
-            + Terms::turns(&self.task.path.turn_weights, &way.turns);
+            + Terms::turns(&self.task.path.turn_weights, &way.turns)
+            + self.robust_cost(coefficients);
         Evaluation { cost, violation: excess.iter().sum::<f64>() + beyond }
+    }
+
+    fn robust_cost(&self, coefficients: &[f64]) -> f64 {
+        self.variants.as_ref().map_or(0.0, |variants| variants.cost(coefficients))
+    }
+
+    /// What robots as they may be add to the cost, where the task asks for that.
+    pub(super) fn robust_term(&self, coefficients: &[f64]) -> Option<Term> {
+        self.variants.as_ref().map(|variants| variants.term(coefficients))
     }
 
     /// The path, looked at where the task asks for something on the way.

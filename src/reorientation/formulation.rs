@@ -244,7 +244,8 @@ impl<F: Family> Problem for Formulated<F> {
     }
 
     fn relaxed(&self) -> Option<&dyn Problem> {
-        if self.task.task().path.is_empty() || self.timed().is_none() {
+        let task = self.task.task();
+        if (task.path.is_empty() && task.robust.is_none()) || self.timed().is_none() {
             return None;
         }
         let relax = || {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::excursions::places;
+use super::excursions::{highest_sample, peak, places};
 use super::motion::Motion;
 use super::path::{Heights, Watched};
 use crate::clearance::Scene;
@@ -26,6 +26,9 @@ pub(super) struct Limited {
     pub(super) is_least: bool,
     /// At every sample.
     pub(super) values: Vec<f64>,
+    /// The value that uses most of the limit, and when \[s\].
+    pub(super) worst: f64,
+    pub(super) worst_at: f64,
 }
 
 /// The two closest points of bodies that have to keep a distance, inertial axes with the origin at the system's centre of
@@ -50,15 +53,20 @@ pub(super) fn limited(task: &Task, motion: &Motion) -> Vec<Limited> {
         let index = watched.iter().position(|own| *own == one)?;
         Some(heights[index].clone())
     };
+    let duration = motion.time.last().copied().unwrap_or_default();
     let mut all = Vec::new();
     let mut tell = |name: &str, unit, limit: Option<f64>, is_least, values: Option<Vec<f64>>| {
         let limited = limit.zip(values);
-        all.extend(limited.map(|(limit, values)| Limited {
-            name: name.to_owned(),
-            unit,
-            limit,
-            is_least,
-            values,
+        all.extend(limited.map(|(limit, values)| {
+            let sign = if is_least { -1.0 } else { 1.0 };
+            let heights = values.iter().map(|value| sign * value).collect::<Vec<f64>>();
+            // Another pair of bodies may be the closest at the next sample, so there is no parabola.
+            let (height, share) = match unit {
+                "m" => highest_sample(&heights),
+                _ => peak(heights.len(), |at| heights[at]),
+            };
+            let (worst, worst_at) = (sign * height, share * duration);
+            Limited { name: name.to_owned(), unit, limit, is_least, values, worst, worst_at }
         }));
     };
     let in_degrees = |values: Option<Vec<f64>>| {

@@ -33,6 +33,7 @@ mod poses;
 mod published;
 mod reach;
 mod replayed;
+mod robust;
 mod robustness;
 mod settings;
 mod spline_box;

@@ -19,8 +19,7 @@ pub(super) struct Terms {
 impl Terms {
     /// With `K_b`; `K_t` is the rest of one.
     pub(super) fn new(base_weight: f64) -> Self {
-        let k_q = (K_Q_DEG.to_radians() / 2.0).sin();
-        Self { error: base_weight / k_q, duration: 1.0 - base_weight }
+        Self { error: Self::error_weight(base_weight), duration: 1.0 - base_weight }
     }
 
     /// `J` of a motion: `‖δq_b‖`, its duration \[s\] and its excess over limits, ranges and what else is limited.
@@ -47,6 +46,16 @@ impl Terms {
     /// What turns of the base on the way \[rad\] add to the cost, where a degree adds so much.
     pub(super) fn turn(weight: f64, turns: Vec<Piece>) -> Term {
         Term::max(weight.to_degrees(), turns).at_least(0.0)
+    }
+
+    /// What errors of the base with robots as they may be add to the cost, where they weigh so much beside the base's own.
+    pub(super) fn robust(weight: f64, errors: Vec<Piece>) -> Term {
+        Term::max(Self::error_weight(weight), errors).at_least(0.0)
+    }
+
+    /// What `‖δq_b‖` costs where a degree costs so much.
+    pub(super) fn error_weight(weight: f64) -> f64 {
+        weight / (K_Q_DEG.to_radians() / 2.0).sin()
     }
 
     /// What time, the error and the excess over the joints' ranges weigh.

@@ -69,10 +69,15 @@ impl<F: Family> Reorientation<F> {
 impl<F: Family> Reorientation<F> {
     /// What is asked for on the way.
     fn bent(&self, coefficients: &[f64]) -> Bent {
-        let Some(sampled) = self.sampled(coefficients) else { return Bent::default() };
-        let asked = self.limits(&self.samples(coefficients)).time;
-        let pieces = sampled.pieces(self.width(), asked, 0);
-        Bent::new(pieces.durations().cloned().collect(), pieces.terms(), pieces.excess)
+        let (mut durations, mut terms, mut excess) = (Vec::new(), Vec::new(), 0.0);
+        if let Some(sampled) = self.sampled(coefficients) {
+            let asked = self.limits(&self.samples(coefficients)).time;
+            let pieces = sampled.pieces(self.width(), asked, 0);
+            durations = pieces.durations().cloned().collect();
+            (terms, excess) = (pieces.terms(), pieces.excess);
+        }
+        terms.extend(self.robust_term(coefficients));
+        Bent::new(durations, terms, excess)
     }
 }
 

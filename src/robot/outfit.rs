@@ -189,7 +189,7 @@ fn resting_place(joint: &MovingJoint<'_>, stated: Option<f64>) -> Result<f64, St
 }
 
 /// Where a joint brings its link.
-fn moved(joint: &Joint, position: f64) -> Placement {
+pub(super) fn moved(joint: &Joint, position: f64) -> Placement {
     let identity = nalgebra::Rotation3::identity();
     match joint {
         Joint::Revolute(axis) => Placement::new(

@@ -13,7 +13,7 @@ use super::reader::Reader;
 use super::tables::{
     Cycles, LIMIT_KEYS, LimitsTable, PostureTable, StatedTable, WeightsTable, placed, unplaced,
 };
-use super::uncertainty::UncertaintyTable;
+use super::uncertainty::{Robust, RobustTable, UncertaintyTable};
 use super::way::Way;
 use super::{PoseTable, Posture, PostureParts, Task, ToolGoal};
 use crate::input::{Document, Fraction, InputError, NonNegative, Positive, nearest};
@@ -54,6 +54,8 @@ pub struct TaskTable {
     pub(super) cycles: Option<Spanned<Cycles>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     uncertainty: Option<UncertaintyTable>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    robust: Option<Spanned<RobustTable>>,
     /// Limits on rate, acceleration and jerk that a sweep states.
     #[serde(skip)]
     swept: [bool; 3],
@@ -74,6 +76,7 @@ impl From<StatedTable> for TaskTable {
             via,
             cycles,
             uncertainty,
+            robust,
         } = stated;
         let robot = robot.unwrap_or_else(|| Spanned::new(0..0, PAPERS_ROBOT.to_owned()));
         let swept = [false; 3];
@@ -91,6 +94,7 @@ impl From<StatedTable> for TaskTable {
             via,
             cycles,
             uncertainty,
+            robust,
             swept,
         }
         .filled()
@@ -317,8 +321,10 @@ impl TaskTable {
             goal_tolerance: tolerance.to_radians(),
             path: way.build()?,
             uncertainty: self.uncertainty.as_ref().map(|own| own.build(&reader)).transpose()?,
+            robust: None,
             robot: Arc::new(robot),
         };
+        task.robust = self.robust(&task, document)?;
         let solids = self.keep_out.solids(&task.robot, &task.start);
         let least = self.limits.clearance_m.as_ref().map(|clearance| clearance.get_ref().0);
         // What is to be kept out of is not to be touched.
@@ -332,6 +338,20 @@ impl TaskTable {
                 Err(document.error_at(self.limits.span_of(key), reason, None))
             }
         }
+    }
+
+    /// The wish for robots as they may be.
+    fn robust(&self, task: &Task, document: &Document) -> Result<Option<Robust>, InputError> {
+        let Some(table) = &self.robust else { return Ok(None) };
+        let failed = |message: String| document.error_at(table.span(), message, None);
+        let uncertainty = task.uncertainty.as_ref().ok_or_else(|| {
+            failed(
+                "found `robust` without `[task.uncertainty]`, which says what is not known".into(),
+            )
+        })?;
+        let robust = table.get_ref().build(uncertainty, task.base_weight);
+        robust.uncertainty.draw(task).map_err(|error| failed(error.to_string()))?;
+        Ok(Some(robust))
     }
 
     /// The goal, and what it is in terms of the tool if the table states that.

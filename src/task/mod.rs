@@ -29,7 +29,7 @@ pub use mission::{Leg, Mission};
 pub use path_limits::{ClearanceLimit, Cone, Impossible, PathLimits, TurnFrom, bodies_of};
 pub use pose::{PoseTable, PostureParts};
 pub use tool_goal::ToolGoal;
-pub use uncertainty::{Uncertainty, Unknown};
+pub use uncertainty::{Robust, RobustOf, Uncertainty, Unknown};
 
 /// `K_b` where a file says nothing (eq. 33).
 const BASE_WEIGHT: f64 = 0.9;
@@ -55,12 +55,15 @@ pub struct Task {
     pub path: PathLimits,
     /// What is not known exactly, where the task says so.
     pub uncertainty: Option<Uncertainty>,
+    /// Whether the base is to end near its goal with robots as they may be, too.
+    pub robust: Option<Robust>,
 }
 
 impl Task {
     /// All that a motion's cost follows from, as JSON: [`Robot::identity`], `start` and `goal` with `joints`
     /// \[rad or m\] and `base`, a quaternion `w, x, y, z` from base axes to inertial axes, `limits` on rate,
-    /// acceleration and jerk per joint, `base_weight` and, where anything is asked for on the way, `path`.
+    /// acceleration and jerk per joint, `base_weight` and, where anything is asked for on the way, `path`, or of robots as they may be,
+    /// `robust`.
     #[cfg(feature = "harness")]
     pub(crate) fn identity(&self) -> Value {
         let mut identity = json!({
@@ -72,6 +75,9 @@ impl Task {
         });
         if let Some(path) = self.path.identity(&self.robot) {
             identity["path"] = path;
+        }
+        if let Some(robust) = &self.robust {
+            identity["robust"] = robust.identity();
         }
         identity
     }

@@ -12,7 +12,7 @@ use super::joints::{JointValues, Limit, Positions};
 use super::keep_out::KeepOut;
 use super::path_limits::TurnFrom;
 use super::tool_goal::ToolTable;
-use super::uncertainty::UncertaintyTable;
+use super::uncertainty::{RobustTable, UncertaintyTable};
 use super::{PostureParts, shipped};
 use crate::input::{Finite, Fraction, NonNegative, Positive, count, placeless};
 use crate::robot::{BaseTable, Follows, Locked, PayloadTable, Robot, RobotFile};
@@ -34,6 +34,7 @@ pub(super) struct StatedTable {
     pub(super) via: Vec<PostureParts>,
     pub(super) cycles: Option<Spanned<Cycles>>,
     pub(super) uncertainty: Option<UncertaintyTable>,
+    pub(super) robust: Option<Spanned<RobustTable>>,
 }
 
 /// How many swings a turn of the base is divided among.

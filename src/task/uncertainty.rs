@@ -8,9 +8,9 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use super::Task;
 use super::joints::Limit;
 use super::reader::Reader;
-use super::{Posture, Task};
 use crate::input::{Fraction, InputError, NonNegative, count};
 use crate::robot::{Robot, RobotError};
 
@@ -45,6 +45,66 @@ pub struct Uncertainty {
     pub samples: usize,
     /// The seed of the random numbers.
     pub seed: u64,
+}
+
+/// The `robust` table of a `[task]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub(super) struct RobustTable {
+    #[serde(deserialize_with = "count::<10_000, _, _>")]
+    samples: NonZeroUsize,
+    #[serde(default)]
+    of: RobustOf,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    weight: Option<NonNegative>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seed: Option<u64>,
+}
+
+/// Which of the residuals of robots as they may be counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RobustOf {
+    /// All of them alike.
+    Mean,
+    /// The largest.
+    #[default]
+    Worst,
+}
+
+/// A wish that the base ends near its goal with robots as they may be, too.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robust {
+    /// What is not known, how many robots are drawn, and the seed of the random numbers.
+    pub uncertainty: Uncertainty,
+    /// Which of their residuals counts.
+    pub of: RobustOf,
+    /// What a degree of that costs.
+    pub weight: f64,
+}
+
+impl RobustTable {
+    /// The wish; where the table says nothing, a degree costs as much as with the robot itself, and robots are others than those that
+    /// motions are judged by.
+    pub(super) fn build(&self, uncertainty: &Uncertainty, base_weight: f64) -> Robust {
+        let seed = self.seed.unwrap_or_else(|| uncertainty.seed.wrapping_add(1));
+        Robust {
+            uncertainty: Uncertainty { samples: self.samples.get(), seed, ..uncertainty.clone() },
+            of: self.of,
+            weight: self.weight.map_or(base_weight, |weight| weight.0),
+        }
+    }
+}
+
+impl Robust {
+    /// All that a cost follows from, as JSON.
+    pub(crate) fn identity(&self) -> serde_json::Value {
+        let Uncertainty { mass, inertia, mount, joints, samples, seed } = &self.uncertainty;
+        serde_json::json!({
+            "mass": mass, "inertia": inertia, "mount": mount, "joints": joints,
+            "samples": samples, "seed": seed, "of": self.of, "weight": self.weight,
+        })
+    }
 }
 
 /// One thing that is not known exactly.
@@ -118,20 +178,9 @@ impl Uncertainty {
             [1.0 + mass, 1.0 + self.inertia * share(Unknown::Inertia(body))]
         };
         let shift = Vector3::from_fn(|axis, _| self.mount * share(Unknown::Mount(axis)));
-        let moved = |posture: &Posture| {
-            let mut joints = posture.joints.clone();
-            for (joint, at) in joints.iter_mut().enumerate() {
-                *at += self.joints[joint] * share(Unknown::Joint(joint));
-            }
-            task.robot.place_followers(&mut joints);
-            Posture { joints, base: posture.base }
-        };
-        Ok(Task {
-            robot: task.robot.varied(factors, shift)?.into(),
-            start: moved(&task.start),
-            goal: moved(&task.goal),
-            ..task.clone()
-        })
+        let offset = |(joint, most): (usize, &f64)| most * share(Unknown::Joint(joint));
+        let offsets: Vec<f64> = self.joints.iter().enumerate().map(offset).collect();
+        Ok(Task { robot: task.robot.varied(factors, shift, &offsets)?.into(), ..task.clone() })
     }
 
     /// Tasks as they may be, each unknown drawn for itself.

@@ -191,6 +191,21 @@ def check_largest_turn(page, folder, checks):
     checks.that(told and abs(float(told[1]) - max(turns)) < 0.3, f"{folder.name}: {told and told[1]}°, shown {max(turns):.2f}°")
 
 
+def check_worst_moments(page, folder, checks):
+    """Every limit on the way has a mark on the time line, and a button that shows where most of it is used."""
+    limits = stored.experiment(folder)["task"]["limits"]
+    asked = [key for key in limits if key.startswith("base_")]
+    buttons = page.locator("[data-part='limited'] button")
+    checks.equal(buttons.count(), len(asked), f"{folder.name}: worst moments")
+    checks.equal(page.locator("[data-part='marks'] span").count(), len(asked), f"{folder.name}: marks")
+    for i in range(buttons.count()):
+        button = buttons.nth(i)
+        at = float(re.search(r" at ([0-9.]+) s", button.inner_text())[1])
+        button.click()
+        shown = float(page.locator("[data-part='time']").inner_text().split()[0])
+        checks.that(abs(shown - at) < 0.011, f"{folder.name}: {shown} s instead of {at} s")
+
+
 def check_motion(page, folder, checks):
     name = folder.name
     canvas, play = page.locator("canvas"), page.locator("[data-part='play']")
@@ -299,6 +314,7 @@ def main(results, pictures, axe):
                     check_motion(page, folder, checks)
                     motions += check_ends(page, folder, checks)
                     check_largest_turn(page, folder, checks)
+                    check_worst_moments(page, folder, checks)
                 check_keyboard(page, checks, folder.name)
             check_looks(browser, path, checks, pictures)
             print(f"{folder.name:14} {size / 1e3:6.0f} kB {checks.made - before:5} checks", flush=True)

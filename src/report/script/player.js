@@ -55,7 +55,7 @@ class Player {
     this.scenes = scenes;
     this.view = new View(part("canvas"));
     this.parts = Object.fromEntries(
-      ["canvas", "play", "scrub", "speed", "loop", "reset", "instance", "about", "time", "yaw", "pitch", "roll", "error", "joints", "limits", "limited"]
+      ["canvas", "play", "scrub", "speed", "loop", "reset", "instance", "about", "time", "yaw", "pitch", "roll", "error", "joints", "limits", "limited", "marks"]
         .map((name) => [name, part(name)]),
     );
     this.listen();
@@ -95,7 +95,8 @@ class Player {
       "Arrow keys turn the view, plus and minus zoom, Home resets, space plays and pauses.";
     this.rows = joints.map((joint) => jointRow(joint));
     this.parts.joints.replaceChildren(...this.rows.map(({ row }) => row));
-    this.limits = limited.map((one) => limitRow(one));
+    this.limits = limited.map((one) => limitRow(one, () => this.jump(one.worst_at)));
+    this.parts.marks.replaceChildren(...limited.map((one) => mark(one, duration)));
     this.parts.limits.hidden = limited.length === 0;
     this.parts.limited.replaceChildren(...this.limits.map(({ row }) => row));
     this.view.show(this.scene);
@@ -128,6 +129,12 @@ class Player {
     // Else a frame that was asked for already would go on beside those of the next start.
     cancelAnimationFrame(this.frame);
     this.parts.play.textContent = "Play";
+  }
+
+  /** Stops at a time. */
+  jump(time) {
+    this.pause();
+    this.go(time / this.scene.duration);
   }
 
   /** Shows the motion at a share of its time. */
@@ -178,17 +185,28 @@ function jointRow(joint) {
   return { row, tell };
 }
 
-/** A row for what has a limit on the way, and how to tell it the value now. */
-function limitRow(limited) {
-  const { name, unit, limit, is_least, values } = limited;
+/** Where on the time line most of a limit is used. */
+function mark({ worst_at }, duration) {
+  const span = document.createElement("span");
+  span.style.left = `${(100 * worst_at) / duration}%`;
+  return span;
+}
+
+/** A row for what has a limit on the way, and how to tell it the value now. Its worst moment is a button that calls `jump`. */
+function limitRow(limited, jump) {
+  const { name, unit, limit, is_least, worst, worst_at } = limited;
   const row = document.createElement("tr");
   const head = document.createElement("th");
   head.scope = "row";
   head.textContent = name;
   const cells = [0, 1, 2].map(() => Object.assign(document.createElement("td"), { className: "real" }));
   const text = (value) => (unit ? `${Number(value.toPrecision(3))} ${unit}` : `${Math.round(100 * value)} %`).replace(/ °$/, "°").replace("-", "−");
-  const most = is_least ? Math.min(...values) : Math.max(...values);
-  cells[1].textContent = text(most);
+  const button = document.createElement("button");
+  button.type = "button";
+  button.textContent = `${text(worst)} at ${worst_at.toFixed(2)} s`;
+  button.ariaLabel = `Show ${name} at its worst: ${button.textContent}`;
+  button.addEventListener("click", jump);
+  cells[1].append(button);
   cells[2].textContent = `${is_least ? "≥" : "≤"} ${text(limit)}`;
   const { cell, tell } = gauge(`${name}, share of its limit`);
   row.append(head, ...cells, cell);
