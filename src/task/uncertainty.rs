@@ -84,14 +84,14 @@ pub struct Robust {
 }
 
 impl RobustTable {
-    /// The wish; where the table says nothing, a degree costs as much as with the robot itself, and robots are others than those that
-    /// motions are judged by.
+    /// The wish; where the table says nothing, a degree costs half of what it costs with the robot itself, so that this one still ends
+    /// at its goal, and robots are others than those that motions are judged by.
     pub(super) fn build(&self, uncertainty: &Uncertainty, base_weight: f64) -> Robust {
         let seed = self.seed.unwrap_or_else(|| uncertainty.seed.wrapping_add(1));
         Robust {
             uncertainty: Uncertainty { samples: self.samples.get(), seed, ..uncertainty.clone() },
             of: self.of,
-            weight: self.weight.map_or(base_weight, |weight| weight.0),
+            weight: self.weight.map_or(base_weight / 2.0, |weight| weight.0),
         }
     }
 }
