@@ -156,6 +156,50 @@ fn motions_follow_each_other() {
     }
 }
 
+/// What is caught at rest moves the system's centre of mass; inertial axes stay where they are.
+#[test]
+fn a_target_is_caught_and_brought_to_its_place() {
+    let text = r#"
+[task]
+robot = "ur5e"
+[[task.via]]
+joints_deg = [20, -80, 80, -80, -60, 20]
+capture = { mass = 40, centre_of_mass = [0, 0, 0.2] }
+[[task.via]]
+tool = { position_m = [0.5, 0.3, 0.8] }
+[[task.via]]
+tool = { position_m = [0.5, 0.2, 0.8] }
+release = true
+[task.goal]
+base_zyx_deg = [1, 0, 0]
+"#;
+    let found = planned(text);
+    assert!(found.is_reached());
+    let tasks: Vec<_> = found.legs.iter().map(|leg| leg.motion.task()).collect();
+    let own = found.ends.robot.total_mass();
+    let masses: Vec<f64> = tasks.iter().map(|task| task.robot.total_mass() - own).collect();
+    assert_eq!(masses, [0.0, 40.0, 40.0, 0.0]);
+    // The base's centre of mass, from where it is at the start, moves with each robot as that one's system does.
+    let mut position = Vector3::zeros();
+    for (leg, wanted) in
+        [None, Some([0.5, 0.3, 0.8]), Some([0.5, 0.2, 0.8]), None].iter().enumerate()
+    {
+        let motion = found.legs[leg].motion.sample(200);
+        let joints: Vec<f64> =
+            motion.joints.iter().map(|joint| joint.derivatives[200][0]).collect();
+        let task = tasks[leg];
+        let [from, to] = [
+            Posture::of(&task.robot, &task.start.joints, task.start.base),
+            Posture::of(&task.robot, &joints, motion.base[200]),
+        ];
+        position += Vector3::from(to.position) - Vector3::from(from.position);
+        if let Some(wanted) = wanted {
+            let tool = position + motion.base[200] * Vector3::from(*to.origins.last().unwrap());
+            assert!((tool - Vector3::from(*wanted)).norm() < 1e-6, "{leg}: {tool}");
+        }
+    }
+}
+
 /// A turn of the base in three equal parts, the joints back at their start after each.
 #[test]
 fn a_turn_can_be_divided() {
@@ -191,6 +235,10 @@ fn mistakes_are_told() {
         "found both `tool`",
     );
     expect("[[task.via]]\njoints_deg = [0, 0, 0]", "found 3 values, expected 6");
+    expect(
+        "[[task.via]]\ncapture = { mass = 1 }\nrelease = true",
+        "found both `capture` and `release`",
+    );
 
     let document =
         Document::embedded("mission.toml", "[task]\n[[task.via]]\nbase_zyx_deg = [1, 2, 3]");

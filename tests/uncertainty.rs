@@ -46,8 +46,8 @@ fn masses_inertias_and_the_mount_are_those_of_another_file() {
     };
     let robot = |text: String| Robot::from_document(&Document::embedded("arm", &text)).unwrap();
     let uncertainty = Uncertainty {
-        mass: 0.1,
-        inertia: 0.2,
+        masses: vec![0.1; 2],
+        inertias: vec![0.2; 2],
         mount: 0.03,
         joints: vec![0.0],
         samples: 1,
@@ -69,6 +69,18 @@ fn masses_inertias_and_the_mount_are_those_of_another_file() {
     assert!(shift.norm() < 1e-12, "{shift}");
 }
 
+/// What is not known of a payload, and of nothing else.
+#[test]
+fn bodies_can_be_named() {
+    let text = "[task]\nrobot = \"ur5e\"\npayload = { mass = 12 }\n[task.uncertainty]\nmass = { payload = 0.5 }\n";
+    let task = task(text).unwrap();
+    let uncertainty = task.uncertainty.as_ref().unwrap();
+    let [unknown] = uncertainty.unknowns(&task.robot)[..] else { panic!("one unknown") };
+    assert_eq!(unknown.name(&task.robot), "mass of payload");
+    let heavier = uncertainty.varied(&task, &[(unknown, 1.0)]).unwrap();
+    assert!((heavier.robot.total_mass() - task.robot.total_mass() - 6.0).abs() < 1e-9);
+}
+
 /// With every joint off by the same amount all the way, the base moves as along the shifted path.
 #[test]
 fn joints_that_are_off_move_the_base_as_along_a_shifted_path() {
@@ -77,8 +89,8 @@ fn joints_that_are_off_move_the_base_as_along_a_shifted_path() {
         let count = task.robot.joint_count();
         let offset = 0.02;
         let uncertainty = Uncertainty {
-            mass: 0.0,
-            inertia: 0.0,
+            masses: vec![0.0; 1 + task.robot.links().len()],
+            inertias: vec![0.0; 1 + task.robot.links().len()],
             mount: 0.0,
             joints: vec![offset; count],
             samples: 1,
@@ -197,8 +209,9 @@ fn mistakes_are_told() {
         "robust = { samples = 0 }\n[task.uncertainty]\nmass = 0.1",
         "expected a whole number from 1",
     );
-    expect("[task.uncertainty]\nmass = 1.5", "expected a number from 0 to 1");
+    expect("[task.uncertainty]\nmass = 1.5", "a number from 0 to 1");
     expect("[task.uncertainty]\nmount_m = -1", "zero or above");
+    expect("[task.uncertainty]\nmass = { arm = 0.1 }", "robot `ur5e` has no body `arm` with mass");
     expect("[task.uncertainty]\njoint_deg = [1, 2]", "found 2 values, expected 6");
     expect("[task.uncertainty]\nmasses = 0.1", "unknown field `masses`");
 }

@@ -1,6 +1,7 @@
 //! `driftless check`.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 #[cfg(feature = "harness")]
 use std::time::Duration;
 
@@ -102,7 +103,12 @@ impl Check {
             }
             Kind::Task => {
                 let file = TaskFile::read(&document)?.planned();
-                let problem = file.problem(&document)?;
+                let problem = if file.task.is_mission() {
+                    let mission = file.task.mission(&document)?;
+                    file.trajectory.build(Arc::new(mission.ends), &document)?
+                } else {
+                    file.problem(&document)?
+                };
                 warn_of(&problem.task().robot);
                 print_resolved("task", &file.resolved(&problem))?;
             }

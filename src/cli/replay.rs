@@ -106,7 +106,12 @@ impl Replay {
         start_worker_threads()?;
         let document = read_task(self.task.as_deref())?;
         expect_task(&document, "replay")?;
-        let task = TaskFile::read(&document)?.task.build_ends(&document)?;
+        let table = TaskFile::read(&document)?.task;
+        if table.is_mission() && table.mission(&document)?.changes_load() {
+            let message = "the robot's load changes on the way, expected one that stays the same";
+            return Err(document.error_at(0..0, message, None).into());
+        }
+        let task = table.build_ends(&document)?;
         self.files.check_joints(&task.robot)?;
         warn_of(&task.robot);
         let unit = self.unit.map(|unit| match unit {

@@ -69,7 +69,7 @@ impl<'a> Outfit<'a> {
     }
 
     /// The robot with its payload.
-    pub(super) fn load(&self, robot: Robot) -> Result<Robot, InputError> {
+    pub(crate) fn load(&self, robot: Robot) -> Result<Robot, InputError> {
         match self.payload {
             Some(payload) => self.carrying(&robot, payload),
             None => Ok(robot),

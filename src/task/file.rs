@@ -9,13 +9,14 @@ use toml::Spanned;
 use super::joints::JointValues;
 use super::keep_out::KeepOut;
 use super::path_limits::{ClearanceLimit, Impossible};
+use super::pose::ViaTable;
 use super::reader::Reader;
 use super::tables::{
     Cycles, LIMIT_KEYS, LimitsTable, PostureTable, StatedTable, WeightsTable, placed, unplaced,
 };
 use super::uncertainty::{Robust, RobustTable, UncertaintyTable};
 use super::way::Way;
-use super::{PoseTable, Posture, PostureParts, Task, ToolGoal};
+use super::{PoseTable, Posture, Task, ToolGoal};
 use crate::input::{Document, Fraction, InputError, NonNegative, Positive, nearest};
 use crate::robot::{BaseTable, Follows, Locked, Outfit, PayloadTable, Robot, RobotFile};
 use crate::trajectory::Limits;
@@ -47,9 +48,9 @@ pub struct TaskTable {
     limits: LimitsTable,
     weights: WeightsTable,
     #[serde(skip_serializing_if = "KeepOut::is_empty")]
-    keep_out: KeepOut,
+    pub(super) keep_out: KeepOut,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(super) via: Vec<PostureParts>,
+    pub(super) via: Vec<ViaTable>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) cycles: Option<Spanned<Cycles>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -325,7 +326,7 @@ impl TaskTable {
             robot: Arc::new(robot),
         };
         task.robust = self.robust(&task, document)?;
-        let solids = self.keep_out.solids(&task.robot, &task.start);
+        let solids = self.keep_out.solids(task.start.base_position(&task.robot));
         let least = self.limits.clearance_m.as_ref().map(|clearance| clearance.get_ref().0);
         // What is to be kept out of is not to be touched.
         if let Some(least) = least.or((!solids.is_empty()).then_some(0.0)) {

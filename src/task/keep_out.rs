@@ -7,10 +7,9 @@ use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
-use super::Posture;
 use super::frame::Frame;
 use crate::clearance::{Anchor, Solid};
-use crate::robot::{Robot, ShapeTable, shapes_of};
+use crate::robot::{ShapeTable, shapes_of};
 
 /// The `[task.keep_out]` table: solids by name.
 #[derive(Debug, Clone, Default)]
@@ -30,9 +29,8 @@ impl KeepOut {
         self.0.is_empty()
     }
 
-    /// The solids, for a motion from a posture.
-    pub(super) fn solids(&self, robot: &Robot, start: &Posture) -> Vec<Solid> {
-        let origin = start.base_position(robot);
+    /// The solids, where inertial axes have their origin there from the system's centre of mass \[m\].
+    pub(super) fn solids(&self, origin: Vector3<f64>) -> Vec<Solid> {
         let of_one = |(name, table): &(String, SolidTable)| {
             let (origin, anchor) = match table.frame {
                 Frame::Inertial => (origin, Anchor::Inertial),

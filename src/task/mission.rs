@@ -1,14 +1,18 @@
 //! Tasks of several motions, one after the other: a robot comes to rest at every stop.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::{UnitQuaternion, Vector3};
+use toml::Spanned;
 
 use super::file::{TaskTable, efforts};
+use super::keep_out::KeepOut;
 use super::reader::Reader;
 use super::tool_goal::ToolTable;
-use super::{Posture, Task};
+use super::{ClearanceLimit, Posture, Task};
 use crate::input::{Document, InputError};
+use crate::robot::{Outfit, PayloadTable, Robot};
 use crate::straight::{Straight, StraightError, StraightPath};
 
 /// A task of several motions.
@@ -17,6 +21,7 @@ pub struct Mission {
     document: Document,
     /// From its start to its goal, whatever lies between.
     pub ends: Task,
+    keep_out: KeepOut,
     /// How the tool leaves the start.
     retreat: Option<(Straight, Range<usize>)>,
     stops: Vec<Stop>,
@@ -29,6 +34,44 @@ struct Stop {
     place: Place,
     base: UnitQuaternion<f64>,
     span: Range<usize>,
+    load: Load,
+}
+
+/// What becomes of the tool's load at a stop.
+#[derive(Debug, Clone, Default)]
+enum Load {
+    #[default]
+    Same,
+    /// What it catches, at rest.
+    Capture(Spanned<PayloadTable>),
+    /// What it has caught is let go of.
+    Release,
+}
+
+/// Where a mission stands.
+#[derive(Debug, Clone)]
+pub struct Standing {
+    /// The robot, with what it carries.
+    robot: Arc<Robot>,
+    /// Where it is at rest.
+    pub posture: Posture,
+    /// The base's centre of mass in inertial axes, whose origin is where that is at the very start \[m\].
+    position: Vector3<f64>,
+}
+
+impl Standing {
+    /// At rest at another posture.
+    #[must_use]
+    pub fn moved(&self, posture: Posture) -> Self {
+        let robot = &self.robot;
+        let by = posture.base_position(robot) - self.posture.base_position(robot);
+        Self { robot: robot.clone(), posture, position: self.position + by }
+    }
+
+    /// The origin of inertial axes from the system's centre of mass \[m\].
+    fn origin(&self) -> Vector3<f64> {
+        self.posture.base_position(&self.robot) - self.position
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -83,10 +126,11 @@ impl TaskTable {
         let mut stops = Vec::new();
         for (number, via) in (1..).zip(&self.via) {
             let name = format!("via {number}");
-            let base = via.base().unwrap_or(ends.goal.base);
-            let (place, span) = match (&via.tool, via.joints_span()) {
+            let parts = via.parts();
+            let base = parts.base().unwrap_or(ends.goal.base);
+            let (place, span) = match (&parts.tool, parts.joints_span()) {
                 (Some(tool), None) => (Place::Tool(tool.get_ref().clone()), tool.span()),
-                (None, Some(span)) => (Place::Joints(reader.joints(via)?), span),
+                (None, Some(span)) => (Place::Joints(reader.joints(&parts)?), span),
                 (None, None) => (Place::Stay, 0..0),
                 (Some(_), Some(span)) => {
                     let message =
@@ -94,7 +138,16 @@ impl TaskTable {
                     return Err(document.error_at(span, message, None));
                 }
             };
-            stops.push(Stop { name, place, base, span });
+            let load = match (&via.capture, via.release) {
+                (Some(capture), true) => {
+                    let message = "found both `capture` and `release`, expected one of them";
+                    return Err(document.error_at(capture.span(), message, None));
+                }
+                (Some(capture), false) => Load::Capture(capture.clone()),
+                (None, true) => Load::Release,
+                (None, false) => Load::Same,
+            };
+            stops.push(Stop { name, place, base, span, load });
         }
         if let Some(cycles) = &self.cycles {
             if !self.via.is_empty() {
@@ -107,7 +160,8 @@ impl TaskTable {
                 let share = turn * (cycle as f64 / count as f64);
                 let base = ends.start.base * UnitQuaternion::from_scaled_axis(share);
                 let place = Place::Joints(ends.start.joints.clone());
-                Stop { name: format!("cycle {cycle}"), place, base, span: cycles.span() }
+                let (name, span) = (format!("cycle {cycle}"), cycles.span());
+                Stop { name, place, base, span, load: Load::Same }
             }));
         }
         let (place, span) = match &self.goal.tool {
@@ -121,18 +175,20 @@ impl TaskTable {
                 return Err(document.error_at(span, message, Some(help)));
             }
         }
-        stops.push(Stop { name: "goal".to_owned(), place, base: ends.goal.base, span });
+        let (name, base) = ("goal".to_owned(), ends.goal.base);
+        stops.push(Stop { name, place, base, span, load: Load::Same });
         let retreat = self.start.retreat_m.as_ref().map(|retreat| {
             let keeps_orientation = ends.robot.leading_count() >= 6;
             let (direction, distance) = (-Vector3::z(), retreat.get_ref().0);
             (Straight { direction, distance, keeps_orientation }, retreat.span())
         });
-        let mission = Mission { document: document.clone(), ends, retreat, stops };
+        let (document, keep_out) = (document.clone(), self.keep_out.clone());
+        let mission = Mission { document, ends, keep_out, retreat, stops };
         // What cannot be reached is told before anything is planned.
-        let mut before = mission.ends.start.clone();
+        let mut at = mission.start();
         for stop in 0..mission.stops.len() {
-            let legs = mission.legs(stop, &before)?;
-            before = legs[0].end();
+            let legs = mission.legs(stop, &at)?;
+            at = mission.loaded(stop, &at.moved(legs[0].end()))?;
         }
         Ok(mission)
     }
@@ -159,14 +215,60 @@ impl Mission {
         &self.stops[stop].name
     }
 
+    /// Whether the robot's load changes on the way.
+    pub fn changes_load(&self) -> bool {
+        self.stops.iter().any(|stop| !matches!(stop.load, Load::Same))
+    }
+
+    /// Where it begins.
+    pub fn start(&self) -> Standing {
+        let (robot, posture) = (self.ends.robot.clone(), self.ends.start.clone());
+        Standing { robot, posture, position: Vector3::zeros() }
+    }
+
     /// How the tool leaves the start, straight back, if it does.
     pub fn leaving_start(&self) -> Result<Option<StraightPath>, InputError> {
         let Some((straight, span)) = &self.retreat else { return Ok(None) };
-        self.straight(straight, &self.ends.start, span, "retreat_m").map(Some)
+        self.straight(straight, &self.start(), span, "retreat_m").map(Some)
+    }
+
+    /// At the same place once the tool has caught or let go of what it is to.
+    pub fn loaded(&self, stop: usize, at: &Standing) -> Result<Standing, InputError> {
+        let robot = match &self.stops[stop].load {
+            Load::Same => return Ok(at.clone()),
+            Load::Release => self.ends.robot.clone(),
+            Load::Capture(payload) => {
+                let none = Outfit::none(&self.document);
+                let outfit = Outfit { payload: Some(payload), ..none };
+                Arc::new(outfit.load((*at.robot).clone())?)
+            }
+        };
+        Ok(Standing { robot, ..at.clone() })
+    }
+
+    /// A task of the robot as it is there, from there to the same posture.
+    pub fn task_at(&self, at: &Standing) -> Task {
+        let mut path = self.ends.path.clone();
+        if let Some(limit) = &path.clearance {
+            let solids = self.keep_out.solids(at.origin());
+            path.clearance = Some(ClearanceLimit::new(&at.robot, solids, limit.least));
+        }
+        Task {
+            robot: at.robot.clone(),
+            start: at.posture.clone(),
+            goal: at.posture.clone(),
+            tool: None,
+            path,
+            ..self.ends.clone()
+        }
     }
 
     /// How it leaves a stop.
-    pub fn leaving(&self, stop: usize, from: &Posture) -> Result<Option<StraightPath>, InputError> {
+    pub fn leaving(
+        &self,
+        stop: usize,
+        from: &Standing,
+    ) -> Result<Option<StraightPath>, InputError> {
         let Stop { place, span, .. } = &self.stops[stop];
         let Place::Tool(tool) = place else { return Ok(None) };
         let [_, Some(straight)] = tool.straights() else { return Ok(None) };
@@ -176,11 +278,12 @@ impl Mission {
     fn straight(
         &self,
         straight: &Straight,
-        from: &Posture,
+        from: &Standing,
         span: &Range<usize>,
         key: &str,
     ) -> Result<StraightPath, InputError> {
-        let path = straight.path(&self.ends.robot, &from.joints, from.base);
+        let Posture { joints, base } = &from.posture;
+        let path = straight.path(&from.robot, joints, *base);
         path.map_err(|error| self.blocked(&error, span, key))
     }
 
@@ -189,24 +292,22 @@ impl Mission {
     }
 
     /// The ways to come to a stop, the nearest first.
-    pub fn legs(&self, stop: usize, from: &Posture) -> Result<Vec<Leg>, InputError> {
-        let Stop { place, base, span, name } = &self.stops[stop];
+    pub fn legs(&self, stop: usize, from: &Standing) -> Result<Vec<Leg>, InputError> {
+        let Stop { place, base, span, name, .. } = &self.stops[stop];
         let failed = |message: String| {
             self.document.error_at(span.clone(), format!("{name}: {message}"), None)
         };
+        let here = self.task_at(from);
         let to = |joints: &[f64], base: UnitQuaternion<f64>| Task {
-            start: from.clone(),
             goal: Posture { joints: joints.to_vec(), base },
-            tool: None,
-            ..self.ends.clone()
+            ..here.clone()
         };
         let (tasks, approach) = match place {
             Place::Joints(joints) => (vec![to(joints, *base)], None),
-            Place::Stay => (vec![to(&from.joints, *base)], None),
+            Place::Stay => (vec![to(&from.posture.joints, *base)], None),
             Place::Tool(tool) => {
-                let inertial = self.ends.start.base_position(&self.ends.robot);
-                let efforts = efforts(&self.ends.limits.0);
-                let goal = tool.build(&self.ends.robot, inertial, base, &from.joints, &efforts);
+                let (near, efforts) = (&from.posture.joints, efforts(&self.ends.limits.0));
+                let goal = tool.build(&from.robot, from.origin(), base, near, &efforts);
                 let goal = goal.map_err(failed)?;
                 let chosen = tool.branch();
                 let count = goal.branches.len();

@@ -9,7 +9,7 @@ use toml::Spanned;
 use super::joints::Positions;
 use super::tool_goal::ToolTable;
 use crate::input::Finite;
-use crate::robot::Robot;
+use crate::robot::{PayloadTable, Robot};
 
 /// A pair of start and goal; what it leaves out is the task's.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -35,6 +35,34 @@ pub struct PostureParts {
     pub(super) tool: Option<Spanned<ToolTable>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) base_zyx_deg: Option<[Finite; 3]>,
+}
+
+/// A stop on the way: a posture, and what the tool does there.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default, expecting = "a table")]
+pub(super) struct ViaTable {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) joints_deg: Option<Spanned<Positions>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) joints: Option<Spanned<Positions>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) tool: Option<Spanned<ToolTable>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) base_zyx_deg: Option<[Finite; 3]>,
+    /// What the tool catches, at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) capture: Option<Spanned<PayloadTable>>,
+    /// Whether it lets go of what it has caught.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(super) release: bool,
+}
+
+impl ViaTable {
+    /// The posture.
+    pub(super) fn parts(&self) -> PostureParts {
+        let Self { joints_deg, joints, tool, base_zyx_deg, .. } = self.clone();
+        PostureParts { joints_deg, joints, tool, base_zyx_deg }
+    }
 }
 
 impl PostureParts {

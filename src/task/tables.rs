@@ -11,6 +11,7 @@ use super::cones::Cones;
 use super::joints::{JointValues, Limit, Positions};
 use super::keep_out::KeepOut;
 use super::path_limits::TurnFrom;
+use super::pose::ViaTable;
 use super::tool_goal::ToolTable;
 use super::uncertainty::{RobustTable, UncertaintyTable};
 use super::{PostureParts, shipped};
@@ -31,7 +32,7 @@ pub(super) struct StatedTable {
     pub(super) limits: LimitsTable,
     pub(super) weights: WeightsTable,
     pub(super) keep_out: KeepOut,
-    pub(super) via: Vec<PostureParts>,
+    pub(super) via: Vec<ViaTable>,
     pub(super) cycles: Option<Spanned<Cycles>>,
     pub(super) uncertainty: Option<UncertaintyTable>,
     pub(super) robust: Option<Spanned<RobustTable>>,

@@ -1,5 +1,6 @@
 //! What is not known exactly: masses, inertias, where the arm is mounted, how well joints follow their paths.
 
+use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 
 use nalgebra::Vector3;
@@ -11,15 +12,15 @@ use toml::Spanned;
 use super::Task;
 use super::joints::Limit;
 use super::reader::Reader;
-use crate::input::{Fraction, InputError, NonNegative, count};
+use crate::input::{Document, Fraction, InputError, NonNegative, count};
 use crate::robot::{Robot, RobotError};
 
 /// The `[task.uncertainty]` table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub(super) struct UncertaintyTable {
-    mass: Fraction,
-    inertia: Fraction,
+    mass: Spanned<Shares>,
+    inertia: Spanned<Shares>,
     mount_m: NonNegative,
     #[serde(skip_serializing_if = "Option::is_none")]
     joint_deg: Option<Spanned<Limit>>,
@@ -30,13 +31,54 @@ pub(super) struct UncertaintyTable {
     seed: u64,
 }
 
+/// A share of all bodies, or shares of some by name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "a number from 0 to 1, or a table of such numbers by body")]
+pub(super) enum Shares {
+    All(Fraction),
+    Named(BTreeMap<String, Fraction>),
+}
+
+impl Shares {
+    /// For base and links: the base's comes first.
+    fn listed(
+        shares: &Spanned<Self>,
+        robot: &Robot,
+        document: &Document,
+    ) -> Result<Vec<f64>, InputError> {
+        match shares.get_ref() {
+            Self::All(share) => Ok(vec![share.0; 1 + robot.links().len()]),
+            Self::Named(shares_by_name) => {
+                let mut listed = vec![0.0; 1 + robot.links().len()];
+                for (name, share) in shares_by_name {
+                    let body = robot.heavy_bodies().find(|(_, body)| body == name);
+                    let (body, _) = body.ok_or_else(|| {
+                        let message =
+                            format!("robot `{}` has no body `{name}` with mass", robot.name());
+                        let names: Vec<&str> = robot.heavy_bodies().map(|(_, name)| name).collect();
+                        let help = format!("its bodies are {}", names.join(", "));
+                        document.error_at(shares.span(), message, Some(help))
+                    })?;
+                    listed[place(body)] = share.0;
+                }
+                Ok(listed)
+            }
+        }
+    }
+}
+
+/// Where a body stands in lists that begin with the base.
+fn place(body: Option<usize>) -> usize {
+    body.map_or(0, |link| link + 1)
+}
+
 /// How far the robot may be from what its file says, each part for itself and as likely by any amount up to that.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Uncertainty {
-    /// Share of each body's mass.
-    pub mass: f64,
+    /// Share of each body's mass, the base's before those of links.
+    pub masses: Vec<f64>,
     /// Share of each body's inertia, beside what the mass changes of it.
-    pub inertia: f64,
+    pub inertias: Vec<f64>,
     /// How far the arm may be mounted from where it should, along each base axis \[m\].
     pub mount: f64,
     /// By how much each joint may be off its path all the way \[rad or m\].
@@ -99,9 +141,9 @@ impl RobustTable {
 impl Robust {
     /// All that a cost follows from, as JSON.
     pub(crate) fn identity(&self) -> serde_json::Value {
-        let Uncertainty { mass, inertia, mount, joints, samples, seed } = &self.uncertainty;
+        let Uncertainty { masses, inertias, mount, joints, samples, seed } = &self.uncertainty;
         serde_json::json!({
-            "mass": mass, "inertia": inertia, "mount": mount, "joints": joints,
+            "masses": masses, "inertias": inertias, "mount": mount, "joints": joints,
             "samples": samples, "seed": seed, "of": self.of, "weight": self.weight,
         })
     }
@@ -122,12 +164,12 @@ pub enum Unknown {
 
 impl Default for UncertaintyTable {
     fn default() -> Self {
-        let none = Fraction(0.0);
+        let none = || Spanned::new(0..0, Shares::All(Fraction(0.0)));
         let samples = NonZeroUsize::MIN.saturating_add(255);
         let (joint_deg, joint, seed) = (None, None, 1);
         Self {
-            mass: none,
-            inertia: none,
+            mass: none(),
+            inertia: none(),
             mount_m: NonNegative(0.0),
             joint_deg,
             joint,
@@ -146,8 +188,8 @@ impl UncertaintyTable {
             reader.positive(pair, ["joint_deg", "joint"])?
         };
         Ok(Uncertainty {
-            mass: self.mass.0,
-            inertia: self.inertia.0,
+            masses: Shares::listed(&self.mass, reader.robot, reader.document)?,
+            inertias: Shares::listed(&self.inertia, reader.robot, reader.document)?,
             mount: self.mount_m.0,
             joints,
             samples: self.samples.get(),
@@ -160,8 +202,9 @@ impl Uncertainty {
     /// All that is not known exactly of a robot.
     pub fn unknowns(&self, robot: &Robot) -> Vec<Unknown> {
         let bodies = || robot.heavy_bodies().map(|(body, _)| body);
-        let masses = bodies().filter(|_| self.mass > 0.0).map(Unknown::Mass);
-        let inertias = bodies().filter(|_| self.inertia > 0.0).map(Unknown::Inertia);
+        let masses = bodies().filter(|body| self.masses[place(*body)] > 0.0).map(Unknown::Mass);
+        let inertias = bodies().filter(|body| self.inertias[place(*body)] > 0.0);
+        let inertias = inertias.map(Unknown::Inertia);
         let mount = (0..3).filter(|_| self.mount > 0.0).map(Unknown::Mount);
         let joints = robot.leading().filter(|joint| self.joints[*joint] > 0.0).map(Unknown::Joint);
         masses.chain(inertias).chain(mount).chain(joints).collect()
@@ -174,8 +217,8 @@ impl Uncertainty {
             own.map(|(_, share)| share).sum::<f64>()
         };
         let factors = |body| {
-            let mass = self.mass * share(Unknown::Mass(body));
-            [1.0 + mass, 1.0 + self.inertia * share(Unknown::Inertia(body))]
+            let [mass, inertia] = [&self.masses, &self.inertias].map(|shares| shares[place(body)]);
+            [1.0 + mass * share(Unknown::Mass(body)), 1.0 + inertia * share(Unknown::Inertia(body))]
         };
         let shift = Vector3::from_fn(|axis, _| self.mount * share(Unknown::Mount(axis)));
         let offset = |(joint, most): (usize, &f64)| most * share(Unknown::Joint(joint));

@@ -13,7 +13,7 @@ use crate::reorientation::reach::Reach;
 use crate::reorientation::replayed::Replayed;
 use crate::search::Watch;
 use crate::straight::StraightPath;
-use crate::task::{Posture, Task};
+use crate::task::{Posture, Standing, Task};
 use crate::trajectory::Points;
 
 /// What came of a task of several motions.
@@ -65,14 +65,14 @@ impl Planner {
         let mission = self.mission.as_ref().ok_or(PlanError::Several)?;
         let ends = mission.ends.clone();
         let budget = (budget / mission.stops() as u64).max(1);
-        let mut at = ends.start.clone();
+        let mut at = mission.start();
         let mut legs: Vec<PlannedLeg> = Vec::new();
-        let mut go = |name: String, motion: LegMotion, at: &mut Posture| {
-            *at = motion.end();
+        let mut go = |name: String, motion: LegMotion, at: &mut Standing| {
+            *at = at.moved(motion.end());
             legs.push(PlannedLeg { name, motion });
         };
         if let Some(path) = mission.leaving_start()? {
-            let task = straight_task(&ends, &at, &path);
+            let task = straight_task(mission.task_at(&at), &path);
             go("retreat from start".to_owned(), straight(task, &path), &mut at);
         }
         for stop in 0..mission.stops() {
@@ -94,11 +94,12 @@ impl Planner {
                 }
             };
             if let Some((path, task)) = &choices[chosen].approach {
-                let task = Task { start: at.clone(), ..task.clone() };
+                let task = Task { start: at.posture.clone(), ..task.clone() };
                 go(format!("approach of {name}"), straight(task, path), &mut at);
             }
+            at = mission.loaded(stop, &at)?;
             if let Some(path) = mission.leaving(stop, &at)? {
-                let task = straight_task(&ends, &at, &path);
+                let task = straight_task(mission.task_at(&at), &path);
                 go(format!("retreat from {name}"), straight(task, &path), &mut at);
             }
         }
@@ -106,10 +107,11 @@ impl Planner {
     }
 }
 
-fn straight_task(ends: &Task, from: &Posture, path: &StraightPath) -> Task {
+/// From where the task is, along a line.
+fn straight_task(task: Task, path: &StraightPath) -> Task {
     let [_, joints] = path.ends();
     let goal = Posture { joints: joints.to_vec(), base: path.base[1] };
-    Task { start: from.clone(), goal, tool: None, ..ends.clone() }
+    Task { goal, ..task }
 }
 
 /// The straight motion in the shortest time within all limits.
