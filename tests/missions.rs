@@ -13,6 +13,11 @@ use driftless::search::Watch;
 use driftless::straight::{Straight, StraightError};
 use nalgebra::{UnitQuaternion, Vector3};
 
+/// A robot that comes with the program.
+fn shipped(name: &str) -> Robot {
+    Robot::from_document(&Robot::embedded(name).unwrap()).unwrap()
+}
+
 /// Where the tool is in inertial axes from the system's centre of mass, and where its third axis points, by [`Posture`], which
 /// pictures are drawn with.
 fn tool(
@@ -33,7 +38,7 @@ fn planned(text: &str) -> PlannedMission {
     let scp = Settings::by_name("scp").unwrap();
     let planner = Planner::read(&document, choice, scp).unwrap();
     assert!(planner.is_mission());
-    planner.plan_mission(1, 100_000, &Watch::new()).unwrap()
+    planner.plan_mission(1, 100_000, &Watch::default()).unwrap()
 }
 
 fn refused(text: &str) -> String {
@@ -51,7 +56,7 @@ fn lines_are_straight_in_inertial_space() {
         ("panda", &[0.0, -30.0, 10.0, -110.0, 5.0, 95.0, 30.0]),
         ("canadarm2", &[10.0, 20.0, -30.0, 80.0, -50.0, 20.0, 15.0]),
     ] {
-        let robot = Robot::load(robot).unwrap();
+        let robot = shipped(robot);
         let joints: Vec<f64> = start.iter().map(|angle| angle * PI / 180.0).collect();
         let base = UnitQuaternion::from_euler_angles(0.1, -0.2, 0.3);
         let straight = Straight {
@@ -75,7 +80,7 @@ fn lines_are_straight_in_inertial_space() {
 
 #[test]
 fn lines_that_joints_cannot_follow_are_refused() {
-    let robot = Robot::load("ur5e").unwrap();
+    let robot = shipped("ur5e");
     let straight = Straight { direction: -Vector3::z(), distance: 5.0, keeps_orientation: true };
     let joints = [0.2, -1.0, 1.4, -1.2, -1.0, 0.3];
     let error = straight.path(&robot, &joints, UnitQuaternion::identity()).unwrap_err();

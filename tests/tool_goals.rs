@@ -22,6 +22,11 @@ impl Draws {
     }
 }
 
+/// A robot that comes with the program.
+fn shipped(name: &str) -> Robot {
+    Robot::from_document(&Robot::embedded(name).unwrap()).unwrap()
+}
+
 /// Where the tool is in inertial axes from the system's centre of mass, and how it is turned, by [`Posture`], which pictures are
 /// drawn with.
 fn tool(
@@ -48,7 +53,7 @@ fn task(text: &str) -> Result<Task, String> {
 fn reachable_goals_are_reached() {
     let mut draws = Draws(0.1);
     for name in Robot::embedded_names() {
-        let robot = Robot::load(name).unwrap();
+        let robot = shipped(name);
         let efforts = vec![1.0; robot.joint_count()];
         for trial in 0..30 {
             let near = draws.configuration(&robot);
@@ -162,7 +167,7 @@ fn mistakes_are_told() {
 /// A sphere of the reach is about the base: nothing farther is reached, and by how much it is missed is told.
 #[test]
 fn goals_out_of_reach_are_told_with_the_distance() {
-    let robot = Robot::load("ur5e").unwrap();
+    let robot = shipped("ur5e");
     let position = Some(Vector3::new(5.0, 0.0, 0.0));
     let target = ToolTarget { position, origin: Origin::Base, orientation: Orientation::Any };
     let off = solve(&robot, &target, &[0.3; 6], &[1.0; 6]).unwrap_err();

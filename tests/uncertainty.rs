@@ -183,7 +183,7 @@ fn robust_motions_miss_by_less() {
     let worst = |wish: &str| {
         let text = format!("[task]\nrobot = \"ur5e\"\n{wish}\n{ALL}");
         let problem = formulated(&text, 3);
-        let watch = Watch::new();
+        let watch = Watch::default();
         let mut oracle = Oracle::new(&problem, 3_000, &watch);
         let scp = Scp { starts: std::num::NonZeroUsize::new(4), ..Scp::default() };
         let _ = scp.minimise(&mut oracle, &mut Rng::new(1));

@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_differences() {
         for name in Robot::embedded_names() {
-            let robot = Robot::load(name).unwrap();
+            let robot = Robot::from_document(&Robot::embedded(name).unwrap()).unwrap();
             let reach = robot.reach();
             let positions = robot.random_configurations().nth(7).unwrap();
             let place = Place::of(&robot, &robot.random_configurations().nth(9).unwrap());
