@@ -32,6 +32,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "reference"))
 import make_robots  # noqa: E402
 
 TASKS = make_robots.SOURCE.parents[1] / "task" / "shipped"
+MISSIONS = pathlib.Path(__file__).resolve().parent / "missions"
 TOLERANCE_DEG = 1e-3
 STIFFNESS = 100.0  # frequency of the spring on tracking errors times the motion's duration; the damping is critical
 STEPS = 2000  # of MuJoCo's integrator
@@ -217,14 +218,14 @@ def check(program, task):
         attitude, tracking = run(robot, motion)
         difference = np.degrees(np.linalg.norm(pin.log3(planned.T @ attitude)))
         agree &= bool(difference < TOLERANCE_DEG)
-        print(f"{robot.name:12} {simulator:10} t_f {motion.duration:7.3f} s  base off by {difference:.1e}°  "
+        print(f"{task.stem:12} {simulator:10} t_f {motion.duration:7.3f} s  base off by {difference:.1e}°  "
               f"joints by {tracking:.1e} rad or m  {time.perf_counter() - began:5.1f} s", flush=True)
     return agree
 
 
 def main():
     program, *tasks = sys.argv[1:]
-    tasks = [pathlib.Path(task) for task in tasks] or sorted(TASKS.glob("*.toml"))
+    tasks = [pathlib.Path(task) for task in tasks] or sorted(TASKS.glob("*.toml")) + sorted(MISSIONS.glob("*.toml"))
     agree = [check(program, task) for task in tasks]
     if not all(agree):
         sys.exit(f"{agree.count(False)} of {len(agree)} disagree (allowed: {TOLERANCE_DEG}°)")

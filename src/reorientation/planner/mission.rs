@@ -154,6 +154,14 @@ impl LegMotion {
         }
     }
 
+    /// Whether it keeps all limits and ranges.
+    fn keeps_limits(&self) -> bool {
+        match self {
+            Self::Planned(found) => Reach::keeps_limits(&found.assessment),
+            Self::Straight { task, points, .. } => Replayed::new(task, points).keeps_limits(),
+        }
+    }
+
     /// The motion at equally spaced times.
     pub fn sample(&self, intervals: usize) -> Motion {
         match self {
@@ -224,6 +232,7 @@ impl PlannedMission {
         MissionJson {
             asked: asked.clone(),
             reached: self.is_reached(),
+            within_limits: self.legs.iter().all(|leg| leg.motion.keeps_limits()),
             t_f: self.duration(),
             residual_deg: end.map(|end| end.angle_to(&self.ends.goal.base).to_degrees()),
             interrupted: self.is_interrupted(),
@@ -239,6 +248,7 @@ pub struct MissionJson<'a> {
     #[serde(flatten)]
     asked: Asked<'a>,
     reached: bool,
+    within_limits: bool,
     t_f: f64,
     residual_deg: Option<f64>,
     interrupted: bool,
