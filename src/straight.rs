@@ -46,10 +46,15 @@ pub enum StraightError {
 /// Steps of a motion along the line.
 const STEPS: usize = 256;
 
-/// What joints leave of a unit of the tool's way, and the least singular value of a Jacobian in metres or radians, below which they are
-/// said not to follow it.
+/// What joints may leave of a unit of the tool's way, and the least singular value of the Jacobian that counts.
 const FOLLOWS: f64 = 1e-9;
-const SINGULAR: f64 = 1e-4;
+const SINGULAR: f64 = 1e-6;
+
+/// Joints that go further for a metre of the tool's way \[rad or m\] are too near to a singular configuration to follow it.
+const MOST_RATE: f64 = 100.0;
+
+/// The longest step of the joints \[rad or m\].
+const STEP: f64 = 0.02;
 
 /// Joints and base on the way.
 #[derive(Clone)]
@@ -127,7 +132,7 @@ impl Line<'_> {
         let mut twist = DVector::zeros(self.rows);
         twist.rows_mut(0, 3).copy_from(&(state.base.inverse() * self.direction));
         let rates = jacobian.clone().svd(true, true).solve(&twist, SINGULAR).ok()?;
-        if (&jacobian * &rates - twist).norm() > FOLLOWS {
+        if (&jacobian * &rates - twist).norm() > FOLLOWS || rates.norm() > MOST_RATE {
             return None;
         }
         let mut listed = vec![0.0; robot.joint_count()];
@@ -136,8 +141,21 @@ impl Line<'_> {
         Some(DVector::from_vec(listed))
     }
 
-    /// After so much more of the way \[m\], by the classical Runge-Kutta method; the base's turn as a rotation vector.
-    fn moved(&self, state: &State, step: f64) -> Option<State> {
+    /// After so much more of the way \[m\].
+    fn moved(&self, state: &State, way: f64) -> Option<State> {
+        let mut state = state.clone();
+        let mut left = way;
+        while left != 0.0 {
+            let most = STEP / self.rates(&state)?.norm().max(f64::MIN_POSITIVE);
+            let step = left.clamp(-most, most);
+            state = self.stepped(&state, step)?;
+            left -= step;
+        }
+        Some(state)
+    }
+
+    /// The same in one step of the classical Runge-Kutta method; the base's turn as a rotation vector.
+    fn stepped(&self, state: &State, step: f64) -> Option<State> {
         let at = |by: &(DVector<f64>, Vec3<f64>)| State {
             joints: &state.joints + &by.0,
             base: state.base * UnitQuaternion::from(so3::exp(by.1)),

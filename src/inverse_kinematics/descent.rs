@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::system::linearised;
-use super::{PRECISION, PULLS, ToolTarget};
+use super::target::ToolTarget;
 use crate::robot::{JointKind, Robot};
 
 /// Steps of one search.
@@ -14,6 +14,12 @@ const STEPS: usize = 200;
 /// The damping that a search begins with, and the most that it tries.
 const FIRST_DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e6;
+
+/// Distances \[m\], as shares of the reach, and angles \[rad\] by which a solution may miss.
+pub(super) const PRECISION: f64 = 1e-10;
+
+/// How hard a redundant arm is pulled to the positions that it is to be near to, one after the other.
+const PULLS: [f64; 3] = [1e-2, 1e-4, 0.0];
 
 /// Errors below this are rounding.
 const ROUNDING: f64 = 1e-15;

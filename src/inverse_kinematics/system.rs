@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-use super::{Orientation, Origin, ToolTarget};
+use super::target::{Orientation, Origin, ToolTarget};
 use crate::kinematics::{Outward, manipulator_jacobian, tool};
 use crate::robot::{Joint, Robot};
 

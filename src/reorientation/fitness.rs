@@ -8,10 +8,9 @@ use nalgebra::UnitQuaternion;
 use super::accuracy::Accuracy;
 use super::measure::{Fitness, Given, Tables, Turn, Workspace};
 use super::path::{PathPeak, Sampled};
-use super::robust::Variants;
 use super::terms::{Terms, penalty};
 use crate::lanes::Width;
-use crate::search::{Evaluation, Term};
+use crate::search::Evaluation;
 use crate::task::{PathLimits, Task};
 use crate::trajectory::{Family, Peaks, SinePolynomial, excess, longest_asked, powers};
 
@@ -26,7 +25,8 @@ pub struct Reorientation<F: Family = SinePolynomial> {
     /// clones.
     fine: Arc<[OnceLock<Arc<Tables<F>>>; 2]>,
     width: Width,
-    variants: Option<Variants<F>>,
+    /// The task with robots as they may be, which the cost looks at, too.
+    variants: Arc<[Self]>,
 }
 
 /// What is known of one motion.
@@ -85,7 +85,7 @@ impl<F: Family> Reorientation<F> {
             let _ = fine[0].set(tables.clone());
         }
         let (family, fine) = (Arc::new(family), Arc::new(fine));
-        let variants = Variants::of(&task, &*family, accuracy);
+        let variants = Self::variants_of(&task, &family, accuracy);
         Self { task, family, accuracy, tables, fine, width: Width::widest(), variants }
     }
 
@@ -114,7 +114,7 @@ impl<F: Family> Reorientation<F> {
     #[must_use]
     pub fn with_width(&self, width: Width) -> Self {
         let width = width.min(Width::widest());
-        let variants = self.variants.as_ref().map(|variants| variants.with_width(width));
+        let variants = self.variants.iter().map(|variant| variant.with_width(width)).collect();
         Self { width, variants, ..self.clone() }
     }
 
@@ -148,6 +148,10 @@ impl<F: Family> Reorientation<F> {
     /// The trajectory family.
     pub fn family(&self) -> &F {
         &self.family
+    }
+
+    pub(super) fn variants(&self) -> &[Self] {
+        &self.variants
     }
 
     /// The terms of the cost.
@@ -242,15 +246,6 @@ impl<F: Family> Reorientation<F> {
             + Terms::turns(&self.task.path.turn_weights, &way.turns)
             + self.robust_cost(coefficients);
         Evaluation { cost, violation: excess.iter().sum::<f64>() + beyond }
-    }
-
-    fn robust_cost(&self, coefficients: &[f64]) -> f64 {
-        self.variants.as_ref().map_or(0.0, |variants| variants.cost(coefficients))
-    }
-
-    /// What robots as they may be add to the cost, where the task asks for that.
-    pub(super) fn robust_term(&self, coefficients: &[f64]) -> Option<Term> {
-        self.variants.as_ref().map(|variants| variants.term(coefficients))
     }
 
     /// The path, looked at where the task asks for something on the way.
