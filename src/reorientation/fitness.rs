@@ -156,7 +156,8 @@ impl<F: Family> Reorientation<F> {
 
     /// The terms of the cost.
     pub(super) fn terms(&self) -> Terms {
-        Terms::new(self.task.base_weight)
+        let robust_weight = self.task.robust.as_ref().map_or(0.0, |robust| robust.weight);
+        Terms::new(self.task.base_weight, robust_weight)
     }
 
     fn given(&self) -> Given<'_, F> {

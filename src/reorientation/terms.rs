@@ -17,9 +17,10 @@ pub(super) struct Terms {
 }
 
 impl Terms {
-    /// With `K_b`; `K_t` is the rest of one.
-    pub(super) fn new(base_weight: f64) -> Self {
-        Self { error: Self::error_weight(base_weight), duration: 1.0 - base_weight }
+    /// With `K_b`, of which `K_t` is the rest of one, and what a degree costs with robots as they may be. That is added to what a degree
+    /// costs with the robot itself, or that one would be kept off its goal to bring others nearer.
+    pub(super) fn new(base_weight: f64, robust_weight: f64) -> Self {
+        Self { error: Self::error_weight(base_weight + robust_weight), duration: 1.0 - base_weight }
     }
 
     /// `J` of a motion: `‖δq_b‖`, its duration \[s\] and its excess over limits, ranges and what else is limited.

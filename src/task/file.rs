@@ -321,7 +321,11 @@ impl TaskTable {
             base_weight: weight,
             goal_tolerance: tolerance.to_radians(),
             path: way.build()?,
-            uncertainty: self.uncertainty.as_ref().map(|own| own.build(&reader)).transpose()?,
+            uncertainty: self
+                .uncertainty
+                .as_ref()
+                .map(|own| reader.uncertainty(own))
+                .transpose()?,
             robust: None,
             robot: Arc::new(robot),
         };

@@ -4,6 +4,7 @@ use toml::Spanned;
 
 use super::joints::{self, Key, Positions};
 use super::tables::{LIMIT_KEYS, Pair, PostureTable};
+use super::uncertainty::{Shares, Uncertainty, UncertaintyTable};
 use super::{Posture, PostureParts};
 use crate::input::{Document, Finite, InputError, Positive};
 use crate::robot::{Follow, Robot};
@@ -71,6 +72,24 @@ impl Reader<'_> {
             return Ok(self.with_followers(&rates));
         }
         self.positive(pair, LIMIT_KEYS[order])
+    }
+
+    /// What is not known exactly.
+    pub(super) fn uncertainty(&self, table: &UncertaintyTable) -> Result<Uncertainty, InputError> {
+        let pair = [table.joint_deg.as_ref(), table.joint.as_ref()];
+        let joints = if pair.iter().all(Option::is_none) {
+            vec![0.0; self.robot.joint_count()]
+        } else {
+            self.positive(pair, ["joint_deg", "joint"])?
+        };
+        Ok(Uncertainty {
+            masses: Shares::listed(&table.mass, self.robot, self.document)?,
+            inertias: Shares::listed(&table.inertia, self.robot, self.document)?,
+            mount: table.mount_m.0,
+            joints,
+            samples: table.samples.get(),
+            seed: table.seed,
+        })
     }
 
     /// Positive numbers of all joints, in SI units.

@@ -11,7 +11,6 @@ use toml::Spanned;
 
 use super::Task;
 use super::joints::Limit;
-use super::reader::Reader;
 use crate::input::{Document, Fraction, InputError, NonNegative, count};
 use crate::robot::{Robot, RobotError};
 
@@ -19,16 +18,16 @@ use crate::robot::{Robot, RobotError};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "a table")]
 pub(super) struct UncertaintyTable {
-    mass: Spanned<Shares>,
-    inertia: Spanned<Shares>,
-    mount_m: NonNegative,
+    pub(super) mass: Spanned<Shares>,
+    pub(super) inertia: Spanned<Shares>,
+    pub(super) mount_m: NonNegative,
     #[serde(skip_serializing_if = "Option::is_none")]
-    joint_deg: Option<Spanned<Limit>>,
+    pub(super) joint_deg: Option<Spanned<Limit>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    joint: Option<Spanned<Limit>>,
+    pub(super) joint: Option<Spanned<Limit>>,
     #[serde(deserialize_with = "count::<100_000, _, _>")]
-    samples: NonZeroUsize,
-    seed: u64,
+    pub(super) samples: NonZeroUsize,
+    pub(super) seed: u64,
 }
 
 /// A share of all bodies, or shares of some by name.
@@ -41,7 +40,7 @@ pub(super) enum Shares {
 
 impl Shares {
     /// For base and links: the base's comes first.
-    fn listed(
+    pub(super) fn listed(
         shares: &Spanned<Self>,
         robot: &Robot,
         document: &Document,
@@ -126,14 +125,14 @@ pub struct Robust {
 }
 
 impl RobustTable {
-    /// The wish; where the table says nothing, a degree costs half of what it costs with the robot itself, so that this one still ends
-    /// at its goal, and robots are others than those that motions are judged by.
+    /// The wish; where the table says nothing, a degree costs as much as with the robot itself, and robots are others than those that
+    /// motions are judged by.
     pub(super) fn build(&self, uncertainty: &Uncertainty, base_weight: f64) -> Robust {
         let seed = self.seed.unwrap_or_else(|| uncertainty.seed.wrapping_add(1));
         Robust {
             uncertainty: Uncertainty { samples: self.samples.get(), seed, ..uncertainty.clone() },
             of: self.of,
-            weight: self.weight.map_or(base_weight / 2.0, |weight| weight.0),
+            weight: self.weight.map_or(base_weight, |weight| weight.0),
         }
     }
 }
@@ -176,25 +175,6 @@ impl Default for UncertaintyTable {
             samples,
             seed,
         }
-    }
-}
-
-impl UncertaintyTable {
-    pub(super) fn build(&self, reader: &Reader<'_>) -> Result<Uncertainty, InputError> {
-        let pair = [self.joint_deg.as_ref(), self.joint.as_ref()];
-        let joints = if pair.iter().all(Option::is_none) {
-            vec![0.0; reader.robot.joint_count()]
-        } else {
-            reader.positive(pair, ["joint_deg", "joint"])?
-        };
-        Ok(Uncertainty {
-            masses: Shares::listed(&self.mass, reader.robot, reader.document)?,
-            inertias: Shares::listed(&self.inertia, reader.robot, reader.document)?,
-            mount: self.mount_m.0,
-            joints,
-            samples: self.samples.get(),
-            seed: self.seed,
-        })
     }
 }
 
