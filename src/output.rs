@@ -30,6 +30,19 @@ pub(crate) fn check_writable(path: &Path) -> Result<(), FileError> {
     readable_by_all(0o666).tempfile_in(folder_of(path)).map(drop).map_err(error)
 }
 
+/// Whether [`write_folder`] can write there: the folder around it takes new files, and nothing that is not empty has the name.
+#[cfg(any(feature = "cli", feature = "harness"))]
+pub(crate) fn check_folder_writable(path: &Path) -> Result<(), FileError> {
+    let error = |source| FileError { action: "write", path: path.to_owned(), source };
+    match fs::read_dir(path).map(|mut entries| entries.next().is_some()) {
+        Ok(true) => Err(error(io::ErrorKind::DirectoryNotEmpty.into())),
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(error(e)),
+        Ok(false) | Err(_) => {
+            readable_by_all(0o777).tempdir_in(folder_of(path)).map(drop).map_err(error)
+        }
+    }
+}
+
 /// The folder that a file is in.
 pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
@@ -45,7 +58,6 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 }
 
 /// Makes a folder and those above it.
-#[cfg(feature = "harness")]
 pub(crate) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|source| FileError {
         action: "create",
@@ -68,7 +80,6 @@ pub(crate) fn sync_folder(path: &Path) -> Result<(), FileError> {
 
 /// Has a folder filled under a temporary name beside its own, then renames it. Nothing that is there
 /// is touched: the folder may exist, but only empty.
-#[cfg(feature = "harness")]
 pub(crate) fn write_folder<E: From<FileError>>(
     path: &Path,
     fill: impl FnOnce(&Path) -> Result<(), E>,

@@ -25,7 +25,7 @@ _Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Samples:
-    """A motion at equally spaced times; ``n`` of them.
+    """A motion at ``n`` times.
 
     Attributes
     ----------
@@ -37,10 +37,16 @@ class Samples:
         ``"rad"`` of joints that turn, ``"m"`` of joints that slide.
     angle, rate, acceleration, jerk : ndarray, shape (n, joints)
         Position of every joint and its derivatives, in its unit and seconds.
+    torque : ndarray, shape (n, joints)
+        Torque of every joint [N m], or force [N] where it slides.
     base : ndarray, shape (n, 4)
         The base's attitude as a unit quaternion (w, x, y, z), base axes into inertial axes.
     base_zyx : ndarray, shape (n, 3)
         The same as ZYX Euler angles: yaw, pitch, roll [rad], without jumps of a full turn.
+    base_position : ndarray, shape (n, 3)
+        The base's centre of mass in inertial axes, whose origin is where it is at the start [m].
+    base_rate : ndarray, shape (n, 3)
+        The base's angular velocity in base axes [rad/s].
     """
 
     time: _Array
@@ -50,8 +56,11 @@ class Samples:
     rate: _Array
     acceleration: _Array
     jerk: _Array
+    torque: _Array
     base: _Array
     base_zyx: _Array
+    base_position: _Array
+    base_rate: _Array
 
     def __len__(self) -> int:
         return len(self.time)
@@ -68,8 +77,16 @@ class Samples:
             columns["unit"] = list(self.units) * len(self)
         for name in ("angle", "rate", "acceleration", "jerk"):
             columns[name] = getattr(self, name).ravel()
-        for k, name in enumerate(("base_w", "base_x", "base_y", "base_z")):
-            columns[name] = np.repeat(self.base[:, k], joints)
+
+        def add_base(numbers: _Array, *names: str) -> None:
+            for k, name in enumerate(names):
+                columns[name] = np.repeat(numbers[:, k], joints)
+
+        add_base(self.base, "base_w", "base_x", "base_y", "base_z")
+        columns["torque"] = self.torque.ravel()
+        add_base(self.base_zyx, "base_yaw", "base_pitch", "base_roll")
+        add_base(self.base_position, "base_position_x", "base_position_y", "base_position_z")
+        add_base(self.base_rate, "base_rate_x", "base_rate_y", "base_rate_z")
         return pl.DataFrame(columns)
 
     def to_pandas(self) -> pd.DataFrame:
@@ -161,19 +178,20 @@ class Motion:
         return deepcopy(self._told)
 
     def sample(self, dt: float | None = None) -> Samples:
-        """The motion at equally spaced times.
+        """The motion at times from its start to its end.
 
         Parameters
         ----------
         dt : float, optional
-            Time between samples at most [s]: the least number of equal steps that are no longer, from start to end. Without it, 500 steps.
+            Time between samples [s]. The last sample is always the end; one less than a tenth of `dt` before it is left out. Without it,
+            500 equal steps, of splines the next multiple of their pieces.
 
         Returns
         -------
         Samples
         """
-        time, (angle, rate, acceleration, jerk), base, base_zyx = self._core.sample(dt)
-        return Samples(time, self.joints, tuple(self._core.units), angle, rate, acceleration, jerk, base, base_zyx)
+        time, of_joints, of_base = self._core.sample(dt)
+        return Samples(time, self.joints, tuple(self._core.units), *of_joints, *of_base)
 
     def to_polars(self, dt: float | None = None) -> pl.DataFrame:
         """The samples as a table with one row per time and joint; `dt` as for `sample`."""
@@ -189,7 +207,9 @@ class Motion:
         Parameters
         ----------
         path : path-like
-            A name in ``.csv``, ``.parquet``, or ``.yaml`` for a ROS JointTrajectory.
+            A name in ``.csv`` or ``.parquet`` (a row for each time and joint), ``.wide.csv`` (a row for each time), ``.mat`` (MATLAB),
+            ``.yaml`` (ROS JointTrajectory), ``.goal.yaml`` (goal of ROS 2's FollowJointTrajectory) or ``.mujoco`` (a folder that plays it
+            in MuJoCo); ``docs/motions.md`` has all columns.
         dt : float, optional
             As for `sample`.
         """

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use driftless::reorientation::{
     AnyReorientation, Assessment, AssessmentJson, Excursions, ExcursionsJson, FoundBy,
-    MotionFormat, Planned, Reach, Remark, ShapeJson, intervals, motion_scene, write_motion,
+    MOST_SAMPLES, MotionFormat, Planned, Reach, Record, Remark, Sampling, ShapeJson, intervals,
+    motion_scene, write_motion,
 };
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -16,9 +17,6 @@ use serde_json::{Value, json};
 
 use crate::errors::{self, OrRaise as _};
 use crate::{arrays, json};
-
-/// Most intervals of a sampled motion.
-const MOST_INTERVALS: f64 = 1e7;
 
 /// A motion of a task, and what is known of it.
 #[pyclass(module = "driftless._driftless", frozen)]
@@ -101,27 +99,28 @@ impl Motion {
         self.json.get(key).and_then(Value::as_u64)
     }
 
-    fn intervals(&self, dt: Option<f64>) -> PyResult<usize> {
-        let Some(dt) = dt else { return Ok(intervals(self.problem.spec())) };
-        let count = (self.assessment.duration / dt).ceil();
-        if dt > 0.0 && (1.0..=MOST_INTERVALS).contains(&count) {
-            return Ok(count as usize);
-        }
-        let message = format!(
-            "found dt = {dt} s, expected a time above zero that divides {:.3} s into {MOST_INTERVALS} parts at most",
-            self.assessment.duration
-        );
-        Err(PyValueError::new_err(message))
+    fn sampling(&self, dt: Option<f64>) -> PyResult<Sampling> {
+        let Some(dt) = dt else { return Ok(intervals(self.problem.spec()).into()) };
+        let duration = self.assessment.duration;
+        let sampling = Sampling::of_step(dt).filter(|sampling| sampling.check(duration).is_ok());
+        sampling.ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "found dt = {dt} s, expected a time above zero that gives at most {MOST_SAMPLES} samples of {duration:.3} s"
+            ))
+        })
+    }
+
+    /// The motion at these times, and what follows from it.
+    fn record(&self, sampling: Sampling) -> Record<'_> {
+        let motion = self.problem.sample_at(&self.coefficients, self.assessment.duration, sampling);
+        Record::new(&self.problem.task().robot, motion)
     }
 }
 
-/// Time, joints' derivatives of orders 0 to 3, the base's attitude as quaternions and as Euler angles.
-type Samples<'py> = (
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray3<f64>>,
-    Bound<'py, PyArray2<f64>>,
-    Bound<'py, PyArray2<f64>>,
-);
+/// Time; joints' derivatives of orders 0 to 3 and their torques; the base's attitude as quaternions and as Euler angles, its
+/// position and its rate.
+type Samples<'py> =
+    (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray3<f64>>, [Bound<'py, PyArray2<f64>>; 4]);
 
 #[pymethods]
 impl Motion {
@@ -206,41 +205,31 @@ impl Motion {
     }
 
     fn sample<'py>(&self, py: Python<'py>, dt: Option<f64>) -> PyResult<Samples<'py>> {
-        let intervals = self.intervals(dt)?;
-        let duration = self.assessment.duration;
-        let motion = py.detach(|| self.problem.sample(&self.coefficients, duration, intervals));
-        let (count, joints) = (motion.time.len(), motion.joints.len());
-        let mut derivatives = Vec::with_capacity(4 * count * joints);
-        for order in 0..4 {
-            for i in 0..count {
-                derivatives.extend(motion.joints.iter().map(|joint| joint.derivatives[i][order]));
-            }
-        }
-        let quaternions = motion.base.iter().flat_map(|base| {
-            let [x, y, z, w] = base.coords.into();
-            [w, x, y, z]
+        let sampling = self.sampling(dt)?;
+        let (record, joints) = py.detach(|| {
+            let record = self.record(sampling);
+            let joints = record.by_quantity().collect();
+            (record, joints)
         });
-        let zyx = motion.base_zyx().into_iter().flatten().collect();
+        let (count, shape) = (record.time().len(), [5, record.time().len(), record.joint_count()]);
+        let base = |from: usize, to: usize| {
+            let numbers = record.base().iter().flat_map(|base| base[from..to].to_vec());
+            arrays::matrix(py, count, to - from, numbers.collect())
+        };
         Ok((
-            arrays::vector(py, motion.time.clone()),
-            arrays::vector(py, derivatives).reshape([4, count, joints])?,
-            arrays::matrix(py, count, 4, quaternions.collect())?,
-            arrays::matrix(py, count, 3, zyx)?,
+            arrays::vector(py, record.time().to_vec()),
+            arrays::vector(py, joints).reshape(shape)?,
+            [base(0, 4)?, base(4, 7)?, base(7, 10)?, base(10, 13)?],
         ))
     }
 
     fn save(&self, py: Python<'_>, path: &str, dt: Option<f64>) -> PyResult<()> {
         let format = MotionFormat::of(Path::new(path)).ok_or_else(|| {
-            let expected = "expected a name in .csv, .parquet or .yaml";
+            let expected = format!("expected a name in {}", MotionFormat::endings());
             PyValueError::new_err(format!("cannot tell the format of {path}, {expected}"))
         })?;
-        let intervals = self.intervals(dt)?;
-        let duration = self.assessment.duration;
-        py.detach(|| {
-            let motion = self.problem.sample(&self.coefficients, duration, intervals);
-            write_motion(Path::new(path), format, &motion)
-        })
-        .or_raise()
+        let sampling = self.sampling(dt)?;
+        py.detach(|| write_motion(Path::new(path), format, &self.record(sampling))).or_raise()
     }
 
     /// The page that shows the motion in three dimensions.

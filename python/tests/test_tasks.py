@@ -38,7 +38,7 @@ def test_a_plan_is_the_commands(command: list[str], arguments: tuple[str, ...], 
 
 def test_files_of_a_motion_are_the_commands(command: list[str], tmp_path: Path) -> None:
     motion = driftless.plan(progress=False)
-    for kind in ("csv", "yaml", "parquet"):
+    for kind in ("csv", "wide.csv", "parquet", "mat", "yaml", "goal.yaml"):
         own, theirs = tmp_path / f"own.{kind}", tmp_path / f"theirs.{kind}"
         motion.save(own)
         call(command, "plan", "--motion", theirs)
@@ -170,7 +170,8 @@ def test_samples() -> None:
     samples = motion.sample(dt=0.01)
     n = len(samples)
     assert samples.time[0] == 0 and samples.time[-1] == motion.duration
-    assert np.diff(samples.time).max() <= 0.01 + 1e-12 and n == int(np.ceil(motion.duration / 0.01)) + 1
+    assert samples.time[:-1] == pytest.approx(0.01 * np.arange(n - 1)) and 0.001 <= samples.time[-1] - samples.time[-2] < 0.011
+    assert samples.torque.shape == (n, 6) and samples.base_position.shape == samples.base_rate.shape == (n, 3)
     assert samples.angle.shape == samples.jerk.shape == (n, 6)
     assert samples.base.shape == (n, 4) and samples.base_zyx.shape == (n, 3)
     # Rates are slopes of angles.

@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::results::{ResultsFolder, no_results};
+use super::sampling::SamplingOptions;
 use super::warnings::warn_of_damage;
 use crate::exhibit::words::plural;
 use crate::experiment::{Plan, Run, load, standing};
@@ -23,6 +24,8 @@ pub(super) struct Export {
     /// Folder to write; it may exist, but only empty
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    #[command(flatten)]
+    sampling: SamplingOptions,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -31,16 +34,49 @@ enum Format {
     Ioh,
     /// The runs for COCO, read by cocopp
     Coco,
-    /// The best motion of every instance as comma-separated values
+    /// The best motion of every instance as comma-separated values, a row for each time and joint
     Csv,
-    /// The best motion of every instance as Parquet
+    /// The best motion of every instance as comma-separated values, a row for each time
+    WideCsv,
+    /// The best motion of every instance as Parquet, a row for each time and joint
     Parquet,
+    /// The best motion of every instance for MATLAB
+    Mat,
     /// The best motion of every instance as ROS JointTrajectory
     Yaml,
+    /// The best motion of every instance as the goal of ROS 2's FollowJointTrajectory
+    GoalYaml,
+    /// The best motion of every instance as a folder that plays it in MuJoCo
+    Mujoco,
+}
+
+/// What a format is of.
+enum Kind {
+    Runs(SuiteFormat),
+    Motions(MotionFormat),
+}
+
+impl Format {
+    fn kind(self) -> Kind {
+        match self {
+            Self::Ioh => Kind::Runs(SuiteFormat::Ioh),
+            Self::Coco => Kind::Runs(SuiteFormat::Coco),
+            Self::Csv => Kind::Motions(MotionFormat::Csv),
+            Self::WideCsv => Kind::Motions(MotionFormat::WideCsv),
+            Self::Parquet => Kind::Motions(MotionFormat::Parquet),
+            Self::Mat => Kind::Motions(MotionFormat::Mat),
+            Self::Yaml => Kind::Motions(MotionFormat::Yaml),
+            Self::GoalYaml => Kind::Motions(MotionFormat::GoalYaml),
+            Self::Mujoco => Kind::Motions(MotionFormat::Mujoco),
+        }
+    }
 }
 
 impl Export {
     pub(super) fn execute(self) -> Result<(), CliError> {
+        if let Kind::Runs(_) = self.format.kind() {
+            self.sampling.check_unused("a format of motions, such as csv")?;
+        }
         let folder = self.results.open()?;
         let (plan, runs) = (&folder.plan, load(&folder.plan, &folder.store)?);
         warn_of_damage(&folder.store);
@@ -53,12 +89,9 @@ impl Export {
         if runs.len() < plan.runs.len() {
             note!("note: {} of {} runs are stored so far", runs.len(), plan.runs.len());
         }
-        match self.format {
-            Format::Ioh => self.write_runs(SuiteFormat::Ioh, plan, &runs),
-            Format::Coco => self.write_runs(SuiteFormat::Coco, plan, &runs),
-            Format::Csv => self.write_motions(MotionFormat::Csv, plan, &runs),
-            Format::Parquet => self.write_motions(MotionFormat::Parquet, plan, &runs),
-            Format::Yaml => self.write_motions(MotionFormat::Yaml, plan, &runs),
+        match self.format.kind() {
+            Kind::Runs(format) => self.write_runs(format, plan, &runs),
+            Kind::Motions(format) => self.write_motions(format, plan, &runs),
         }
     }
 
@@ -100,7 +133,7 @@ impl Export {
             let message = "the problems of this experiment have no motions".to_owned();
             return Err(CliError::Usage { message, help: Some("expected ioh or coco".to_owned()) });
         }
-        let written = write_motions(&self.out, format, plan, runs)?;
+        let written = write_motions(&self.out, format, self.sampling.choice(), plan, runs)?;
         let instances = plural(written.motions, "instance");
         say!("{}: the best motions of {instances}", self.out.display());
         if written.missed > 0 {

@@ -39,6 +39,7 @@ mod results;
 mod robot;
 #[cfg(feature = "harness")]
 mod run;
+mod sampling;
 #[cfg(feature = "harness")]
 mod serve;
 mod signals;

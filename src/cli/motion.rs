@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::CliError;
+use super::sampling::SamplingOptions;
 use crate::inverse_kinematics::{Miss, Orientation};
-use crate::output::check_writable;
 #[cfg(feature = "harness")]
 use crate::output::create_folder;
+use crate::output::{check_folder_writable, check_writable};
 use crate::reorientation::{
-    AnyReorientation, Assessment, Closest, Excursions, Motion, MotionFormat, Used, intervals,
-    write_motion,
+    AnyReorientation, Assessment, Closest, Excursions, ExportError, Motion, MotionFormat, Record,
+    Sampling, TooManySamples, Used, intervals, write_motion,
 };
 use crate::robot::{JointKind, MovingJoint, Robot, ShapeSource};
 use crate::task::{Task, ToolGoal};
@@ -20,9 +21,13 @@ use crate::task::{Task, ToolGoal};
 /// Where to write a motion.
 #[derive(Debug, Args)]
 pub(super) struct MotionFiles {
-    /// Write the motion to a .csv, .parquet or .yaml file (ROS JointTrajectory)
+    /// Write the motion; the name's end is the format: .csv or .parquet (a row for each time and joint), .wide.csv (a row for each
+    /// time), .mat (MATLAB), .yaml (ROS JointTrajectory), .goal.yaml (goal of ROS 2's FollowJointTrajectory), .mujoco (a folder that
+    /// plays it in MuJoCo); docs/motions.md has all columns
     #[arg(long, value_name = "FILE")]
     motion: Option<PathBuf>,
+    #[command(flatten)]
+    sampling: SamplingOptions,
     /// Joints that --motion has, by name or by the beginning of their names: left_* [default: all]
     #[arg(long, value_name = "JOINTS", value_delimiter = ',', requires = "motion")]
     joints: Vec<String>,
@@ -35,8 +40,16 @@ pub(super) struct MotionFiles {
 impl MotionFiles {
     /// Finds fault with the files' names and folders before any work is done.
     pub(super) fn check(&self) -> Result<(), CliError> {
-        if let Some((path, _)) = self.format()? {
-            check_writable(path)?;
+        match self.format()? {
+            Some((path, MotionFormat::Mujoco)) => {
+                if !self.joints.is_empty() {
+                    let message = "--joints: a motion for MuJoCo has all joints".to_owned();
+                    return Err(CliError::Usage { message, help: None });
+                }
+                check_folder_writable(path)?;
+            }
+            Some((path, _)) => check_writable(path)?,
+            None => self.sampling.check_unused("--motion FILE")?,
         }
         #[cfg(feature = "harness")]
         if let Some(folder) = &self.figures {
@@ -75,8 +88,9 @@ impl MotionFiles {
             Some(format) if format.is_available() => Ok(Some((path, format))),
             Some(_) => Err(usage("this build leaves out Parquet".to_owned())),
             None => Err(usage(format!(
-                "cannot tell the format of {}, expected a name in .csv, .parquet or .yaml",
-                path.display()
+                "cannot tell the format of {}, expected a name in {}",
+                path.display(),
+                MotionFormat::endings()
             ))),
         }
     }
@@ -88,32 +102,38 @@ impl MotionFiles {
         coefficients: &[f64],
         duration: f64,
     ) -> Result<(), CliError> {
+        let record = |sampling: Option<Sampling>| {
+            let sampling = sampling.unwrap_or_else(|| intervals(problem.spec()).into());
+            sampling.check(duration)?;
+            let motion = problem.sample_at(coefficients, duration, sampling);
+            Ok(Record::new(&problem.task().robot, motion))
+        };
         let sample = |intervals| problem.sample(coefficients, duration, intervals);
-        let own = intervals(problem.spec());
-        self.write_samples(problem.task(), |intervals| sample(intervals.unwrap_or(own)))
+        self.write_samples(problem.task(), record, sample)
     }
 
-    /// The same, of a motion that is sampled in so many intervals, or in as many as suit other tools.
-    pub(super) fn write_samples(
+    /// The same, of a motion that has to be sampled: for other tools at the times that were asked for, if any, and for charts
+    /// in so many intervals.
+    pub(super) fn write_samples<'a>(
         &self,
         task: &Task,
-        sample: impl Fn(Option<usize>) -> Motion,
+        record: impl FnOnce(Option<Sampling>) -> Result<Record<'a>, TooManySamples>,
+        sample: impl Fn(usize) -> Motion,
     ) -> Result<(), CliError> {
         if let Some((path, format)) = self.format()? {
-            let mut motion = sample(None);
+            let mut record = record(self.sampling.choice()).map_err(ExportError::from)?;
             if !self.joints.is_empty() {
-                let is_asked = |name: &str| self.joints.iter().any(|asked| is_meant(asked, name));
-                motion.joints.retain(|joint| is_asked(&joint.name));
+                record.retain_joints(|name| self.joints.iter().any(|asked| is_meant(asked, name)));
             }
-            write_motion(path, format, &motion)?;
+            write_motion(path, format, &record)?;
         }
         #[cfg(feature = "harness")]
         if let Some(folder) = &self.figures {
-            let motion = sample(Some(crate::reorientation::SAMPLES));
+            let motion = sample(crate::reorientation::SAMPLES);
             crate::reorientation::write_motion_figures(folder, &motion, task)?;
         }
         #[cfg(not(feature = "harness"))]
-        let _ = task;
+        let _ = (task, sample);
         Ok(())
     }
 }

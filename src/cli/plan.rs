@@ -107,9 +107,9 @@ impl Plan {
                 note!("{}: {remark}", leg.name);
             }
         }
-        self.files.write_samples(planner.task(), |intervals| {
-            found.sample(|leg| intervals.unwrap_or_else(|| leg.intervals()))
-        })?;
+        let record = |sampling| found.record(sampling);
+        let sample = |intervals| found.sample(|_| intervals);
+        self.files.write_samples(planner.task(), record, sample)?;
         if found.is_interrupted() {
             return Err(CliError::Interrupted("these are the motions so far".to_owned()));
         }

@@ -10,8 +10,8 @@ use super::motion::{MotionFiles, Told};
 use super::replayed::Trajectory;
 use super::{CliError, read_or, read_task, shown, start_worker_threads, warn_of};
 use crate::reorientation::{
-    AngleUnit, AssessmentJson, Excursions, ExcursionsJson, GivenTrajectory, INTERVALS, Published,
-    Reading, ReplayFile, Replayed, ShapeJson, TaskFile,
+    AngleUnit, AssessmentJson, Excursions, ExcursionsJson, GivenTrajectory, Published, Reading,
+    Record, ReplayFile, Replayed, Sampling, ShapeJson, TaskFile,
 };
 
 /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
@@ -130,8 +130,12 @@ impl Replay {
         if !self.json && !trajectory.ignored.is_empty() {
             note!("note: these columns are not read: {}", trajectory.ignored.join(", "));
         }
-        let sample = |intervals: Option<usize>| replayed.sample(intervals.unwrap_or(INTERVALS));
-        self.files.write_samples(&task, sample)
+        let record = |sampling: Option<Sampling>| {
+            let sampling = sampling.unwrap_or_default();
+            sampling.check(trajectory.points.duration())?;
+            Ok(Record::new(&task.robot, replayed.sample(sampling)))
+        };
+        self.files.write_samples(&task, record, |intervals| replayed.sample(intervals))
     }
 }
 

@@ -11,6 +11,7 @@ use super::family::FamilySpec;
 use super::fitness::{Assessment, Reorientation};
 use super::formulation::{Formulated, Formulation};
 use super::motion::Motion;
+use super::sampling::Sampling;
 use super::spline_box::SplineBox;
 use crate::lanes::Width;
 use crate::search::Failure;
@@ -158,7 +159,12 @@ pub trait AnyReorientation: Debug + Send + Sync {
     fn error(&self, coefficients: &[f64]) -> UnitQuaternion<f64>;
 
     /// The motion, sampled; see [`Motion::sample`].
-    fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion;
+    fn sample_at(&self, coefficients: &[f64], duration: f64, sampling: Sampling) -> Motion;
+
+    /// The same at `intervals + 1` equally spaced times.
+    fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion {
+        self.sample_at(coefficients, duration, Sampling::Intervals(intervals))
+    }
 
     /// Whether motions beside this one end nearer to the goal; see [`Reorientation::is_held_by_time`].
     fn is_held_by_time(&self, coefficients: &[f64]) -> bool;
@@ -205,8 +211,8 @@ impl<F: SearchedFamily> AnyReorientation for Reorientation<F> {
         self.error_after(self.net_rotation(coefficients))
     }
 
-    fn sample(&self, coefficients: &[f64], duration: f64, intervals: usize) -> Motion {
-        Motion::sample(self, coefficients, duration, intervals)
+    fn sample_at(&self, coefficients: &[f64], duration: f64, sampling: Sampling) -> Motion {
+        Motion::sample(self, coefficients, duration, sampling)
     }
 
     fn shared(&self) -> Arc<dyn AnyReorientation> {

@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::UnitQuaternion;
 
 use super::fitness::Reorientation;
+use super::sampling::Sampling;
 use crate::attitude::increments;
 use crate::robot::JointKind;
 use crate::trajectory::{Curve as _, Family};
@@ -15,7 +16,7 @@ use crate::trajectory::{Curve as _, Family};
 const SAME_ATTITUDE: f64 = 1e-8;
 const MOST_STEPS: usize = 1 << 17;
 
-/// Everything that moves, at equally spaced times from start to end.
+/// Everything that moves, at times from start to end.
 #[derive(Debug, Clone)]
 pub struct Motion {
     /// Time since the start \[s\].
@@ -38,23 +39,26 @@ pub struct JointMotion {
 }
 
 impl Motion {
-    /// Whether a joint slides.
-    pub(super) fn slides(&self) -> bool {
-        self.joints.iter().any(|joint| joint.kind == JointKind::Prismatic)
-    }
-
-    /// Samples the path with these coefficients at `intervals + 1` times over `duration` seconds.
+    /// Samples the path with these coefficients over `duration` seconds.
     pub fn sample<F: Family>(
         problem: &Reorientation<F>,
         coefficients: &[f64],
         duration: f64,
-        intervals: usize,
+        sampling: impl Into<Sampling>,
     ) -> Self {
+        let sampling = sampling.into();
+        let (intervals, share) = sampling.grid(duration);
         let task = problem.task();
         let family = problem.family();
         let curve = |joint| family.curve(joint, &coefficients[family.coefficients_of(joint)]);
         let curves: Vec<_> = (0..family.joints()).map(curve).collect();
-        let taus: Vec<f64> = (0..=intervals).map(|i| i as f64 / intervals as f64).collect();
+        let time = sampling.times(duration);
+        // Equal intervals are places of the path, whatever its duration.
+        let tau = |(i, time): (usize, &f64)| match sampling {
+            Sampling::Intervals(_) => i as f64 / intervals as f64,
+            Sampling::Rate(_) => time / duration,
+        };
+        let taus: Vec<f64> = time.iter().enumerate().map(tau).collect();
         let joints = task.robot.joints().zip(&curves).map(|(joint, path)| {
             let derivatives = taus.iter().map(|&tau| {
                 let values = path.derivatives::<4>(tau);
@@ -63,14 +67,24 @@ impl Motion {
             let (name, kind) = (joint.name.to_owned(), joint.kind);
             JointMotion { name, kind, derivatives: derivatives.collect() }
         });
-        let write = |tau, angles: &mut [f64], rates: &mut [f64]| {
+        let write = &|tau, angles: &mut [f64], rates: &mut [f64]| {
             for ((angle, rate), curve) in angles.iter_mut().zip(rates).zip(&curves) {
                 [*angle, *rate] = curve.derivatives(tau);
             }
         };
+        let turns = |from: f64, to: f64, steps| {
+            let part = move |place, angles: &mut [f64], rates: &mut [f64]| {
+                write(from + place * (to - from), angles, rates);
+                for rate in rates {
+                    *rate *= to - from;
+                }
+            };
+            increments(&task.robot, steps, part)
+        };
         let base_in = |steps: usize| -> Vec<UnitQuaternion<f64>> {
             let mut attitude = task.start.base;
-            let ends = increments(&task.robot, intervals * steps, write).map(|step| {
+            let rest = (share < 1.0).then(|| turns(share, 1.0, steps)).into_iter().flatten();
+            let ends = turns(0.0, share, intervals * steps).chain(rest).map(|step| {
                 attitude *= step;
                 attitude
             });
@@ -92,7 +106,7 @@ impl Motion {
                 break;
             }
         }
-        Self { joints, time: taus.iter().map(|tau| tau * duration).collect(), base }
+        Self { time, joints, base }
     }
 
     /// Goes on with another motion, which starts where and when this one ends.

@@ -22,6 +22,7 @@ mod rigid;
 mod root;
 mod shape;
 mod shape_table;
+mod to_mjcf;
 mod to_urdf;
 mod tree;
 mod urdf;

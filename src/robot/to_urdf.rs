@@ -41,7 +41,7 @@ impl Robot {
 }
 
 /// The name, with a number behind it if it is taken.
-fn free_name(name: &str, taken: &[&str]) -> String {
+pub(super) fn free_name(name: &str, taken: &[&str]) -> String {
     let numbered = (2..).map(|number| format!("{name}{number}"));
     let mut names = std::iter::once(name.to_owned()).chain(numbered);
     names.find(|name| !taken.contains(&name.as_str())).unwrap_or_default()
@@ -172,13 +172,13 @@ fn roll_pitch_yaw(rotation: &Rotation3<f64>) -> Vector3<f64> {
     Vector3::new((-z).atan2(y), pitch, yaw)
 }
 
-fn spaced(vector: &Vector3<f64>) -> String {
+pub(super) fn spaced(vector: &Vector3<f64>) -> String {
     // No negative zero.
     let [x, y, z] = vector.map(|entry| entry + 0.0).into();
     format!("{x} {y} {z}")
 }
 
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -13,6 +13,7 @@ mod import;
 mod import_instances;
 #[cfg(feature = "harness")]
 mod import_mistakes;
+mod motions;
 mod on_the_way;
 #[cfg(feature = "harness")]
 mod processes;

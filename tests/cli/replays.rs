@@ -16,17 +16,17 @@ const PLANAR: &str = "[task]\nrobot = '../../experiments/robots/sc3dof.toml'\n\
     limits = { rate_deg_s = 60, acceleration_deg_s2 = 70, jerk_deg_s3 = 80 }\n";
 
 /// The object that the command prints.
-fn json(folder: &Folder, args: &[&str]) -> Value {
+pub(crate) fn json(folder: &Folder, args: &[&str]) -> Value {
     let output = folder.run(args);
     assert!(output.status.success(), "{args:?}: {}", stderr(&output));
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-fn near(found: &Value, expected: f64, tolerance: f64) {
+pub(crate) fn near(found: &Value, expected: f64, tolerance: f64) {
     let found = number(found);
     assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
 }

@@ -26,7 +26,7 @@ goal = { joints = [20, 0.3, 30, 20], base_zyx_deg = [0, 0, 0] }
 limits = { rate = [50, 0.15, 50, 50], acceleration = [70, 0.2, 70, 70], jerk = [80, 0.3, 80, 80] }
 ";
 
-fn servicer() -> Folder {
+pub(crate) fn servicer() -> Folder {
     Folder::new().with("servicer.urdf", SERVICER).with("task.toml", TASK)
 }
 
@@ -119,29 +119,6 @@ fn joints_that_slide_are_told_in_metres() {
     let text = stdout(&told);
     assert!(text.contains(" m/s³ on left_slide at "), "{text}");
     assert!(text.contains("°/s³ on "), "{text}");
-}
-
-/// Motions with joints that slide are replayed from every format as they were planned.
-#[test]
-fn exports_are_replayed() {
-    let folder = servicer();
-    let formats: &[&str] = if cfg!(feature = "harness") {
-        &["m.csv", "m.yaml", "m.parquet"]
-    } else {
-        &["m.csv", "m.yaml"]
-    };
-    for file in formats {
-        let plan =
-            folder.run(&["plan", "task.toml", "--json", "--budget", "300", "--motion", file]);
-        let plan: Value = serde_json::from_str(&stdout(&plan)).unwrap();
-        let output = folder.run(&["replay", file, "--task", "task.toml", "--json"]);
-        assert!(output.status.success(), "{}", stderr(&output));
-        let replay: Value = serde_json::from_str(&stdout(&output)).unwrap();
-        let miss =
-            replay["residual_deg"].as_f64().unwrap() - plan["residual_deg"].as_f64().unwrap();
-        assert!(miss.abs() < 1e-6, "{file}: {miss:e}");
-        assert!(!stderr(&output).contains("unit"), "{}", stderr(&output));
-    }
 }
 
 /// Units that a table states row by row are SI, or refused.

@@ -282,7 +282,8 @@ fn motions_are_written() {
     let csv = std::fs::read_to_string(folder.path().join("motion.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + 501 * 6);
     assert!(csv.starts_with(
-        "time,joint,angle,rate,acceleration,jerk,base_w,base_x,base_y,base_z\n0.0,joint1,"
+        "time,joint,angle,rate,acceleration,jerk,base_w,base_x,base_y,base_z,torque,base_yaw,base_pitch,base_roll,base_position_x,\
+         base_position_y,base_position_z,base_rate_x,base_rate_y,base_rate_z\n0.0,joint1,"
     ));
     let yaml = std::fs::read_to_string(folder.path().join("motion.yaml")).unwrap();
     let list = |line: &str, key: &str| -> Vec<serde_json::Value> {

@@ -3,6 +3,7 @@
 use crate::experiment::{Instance, Results, Run};
 use crate::reorientation::any::AnyReorientation;
 use crate::reorientation::motion::Motion;
+use crate::reorientation::sampling::Sampling;
 use crate::reorientation::subject::{DURATION, LARGEST_TURN, RESIDUAL, TaskSubject};
 
 /// The best motion of an instance.
@@ -23,9 +24,9 @@ pub(in crate::reorientation) struct BestMotion<'a> {
 }
 
 impl BestMotion<'_> {
-    /// Sampled at so many intervals.
-    pub(in crate::reorientation) fn sample(&self, intervals: usize) -> Motion {
-        self.problem.sample(&self.coefficients, self.duration, intervals)
+    /// Sampled.
+    pub(in crate::reorientation) fn sample(&self, sampling: impl Into<Sampling>) -> Motion {
+        self.problem.sample_at(&self.coefficients, self.duration, sampling.into())
     }
 }
 

@@ -31,6 +31,7 @@ pub use scene::{FoundBy, motion_scene};
 use crate::exhibit::Exhibits;
 use crate::experiment::Results;
 use crate::reorientation::best_known::BestKnown;
+use crate::reorientation::export::Record;
 use best::{BestMotion, best_motions};
 use pareto::Traded;
 
@@ -57,8 +58,9 @@ pub(super) fn exhibits(results: &Results<'_>) -> Exhibits {
     // Costs of different instances do not compare, so of several there is no best of all to draw.
     if let (1, [motion]) = (results.instances.len(), &best[..]) {
         let sampled = motion.sample(motion_charts::SAMPLES);
-        exhibits.charts.extend(motion_charts::motion_charts(&sampled, motion.problem.task()));
-        exhibits.chart_tables.extend(motion_table(&sampled).ok());
+        let task = motion.problem.task();
+        exhibits.charts.extend(motion_charts::motion_charts(&sampled, task));
+        exhibits.chart_tables.extend(motion_table(&Record::new(&task.robot, sampled)).ok());
     }
     exhibits
 }

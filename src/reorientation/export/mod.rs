@@ -2,18 +2,26 @@
 
 mod csv;
 mod joint_trajectory;
+mod long;
+mod mat;
 #[cfg(feature = "harness")]
 mod motions;
+mod mujoco;
 #[cfg(feature = "harness")]
 mod parquet;
+mod record;
+mod wide;
 
 use std::path::Path;
 
 use super::family::FamilySpec;
-use super::motion::Motion;
+use super::sampling::TooManySamples;
 use crate::output::{FileError, folder_of, remove_temporary, write_file};
+pub(super) use long::number_columns;
 #[cfg(feature = "harness")]
 pub use motions::write_motions;
+pub use record::Record;
+pub(super) use wide::header;
 
 /// Intervals between the samples of an exported motion.
 pub const INTERVALS: usize = 500;
@@ -32,10 +40,18 @@ pub fn intervals(family: FamilySpec) -> usize {
 pub enum MotionFormat {
     /// Comma-separated values, one row per time and joint.
     Csv,
-    /// The same table as Parquet.
+    /// Comma-separated values, one row per time.
+    WideCsv,
+    /// The first table as Parquet.
     Parquet,
+    /// MATLAB's binary file.
+    Mat,
     /// ROS `trajectory_msgs/JointTrajectory` as YAML.
     Yaml,
+    /// The goal of a ROS 2 `control_msgs/action/FollowJointTrajectory` as YAML.
+    GoalYaml,
+    /// A folder with the robot for MuJoCo and a script that plays the motion.
+    Mujoco,
 }
 
 /// A motion that could not be exported.
@@ -44,6 +60,9 @@ pub enum ExportError {
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// There would be too many samples.
+    #[error(transparent)]
+    Samples(#[from] TooManySamples),
     /// The motion could not be brought into the format.
     #[error("cannot write a motion as {format}: {reason}")]
     Format {
@@ -55,23 +74,44 @@ pub enum ExportError {
 }
 
 impl MotionFormat {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Csv,
+        Self::WideCsv,
+        Self::Parquet,
+        Self::Mat,
+        Self::Yaml,
+        Self::GoalYaml,
+        Self::Mujoco,
+    ];
+
     /// The format that a file's name asks for.
     pub fn of(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()? {
-            "csv" => Some(Self::Csv),
-            "parquet" => Some(Self::Parquet),
-            "yaml" | "yml" => Some(Self::Yaml),
-            _ => None,
-        }
+        let name = path.file_name()?.to_str()?;
+        let long = name.strip_suffix(".yml").map(|stem| format!("{stem}.yaml"));
+        let name = long.as_deref().unwrap_or(name);
+        // `a.wide.csv` ends in `.csv`, too.
+        let formats = Self::ALL.into_iter().filter(|format| name.ends_with(format.ending()));
+        formats.max_by_key(|format| format.ending().len())
     }
 
     /// The end of its files' names.
-    pub fn extension(self) -> &'static str {
+    pub fn ending(self) -> &'static str {
         match self {
-            Self::Csv => "csv",
-            Self::Parquet => "parquet",
-            Self::Yaml => "yaml",
+            Self::Csv => ".csv",
+            Self::WideCsv => ".wide.csv",
+            Self::Parquet => ".parquet",
+            Self::Mat => ".mat",
+            Self::Yaml => ".yaml",
+            Self::GoalYaml => ".goal.yaml",
+            Self::Mujoco => ".mujoco",
         }
+    }
+
+    /// All ends of names, for people.
+    pub fn endings() -> String {
+        let [all @ .., last] = Self::ALL.map(Self::ending);
+        format!("{} or {last}", all.join(", "))
     }
 
     /// Whether this build can write it.
@@ -81,12 +121,20 @@ impl MotionFormat {
 }
 
 /// Writes a motion, whole or not at all.
-pub fn write_motion(path: &Path, format: MotionFormat, motion: &Motion) -> Result<(), ExportError> {
+pub fn write_motion(
+    path: &Path,
+    format: MotionFormat,
+    record: &Record<'_>,
+) -> Result<(), ExportError> {
     let bytes = match format {
-        MotionFormat::Csv => csv::motion(motion)?,
-        MotionFormat::Yaml => joint_trajectory::motion(motion)?,
+        MotionFormat::Csv => csv::long(record)?,
+        MotionFormat::WideCsv => csv::wide(record)?,
+        MotionFormat::Mat => mat::motion(record)?,
+        MotionFormat::Yaml => joint_trajectory::motion(record)?,
+        MotionFormat::GoalYaml => joint_trajectory::goal(record)?,
+        MotionFormat::Mujoco => return mujoco::write(path, record),
         #[cfg(feature = "harness")]
-        MotionFormat::Parquet => parquet::motion(motion)?,
+        MotionFormat::Parquet => parquet::motion(record)?,
         #[cfg(not(feature = "harness"))]
         MotionFormat::Parquet => {
             let reason = "this build leaves out the feature `harness`".to_owned();
@@ -95,47 +143,4 @@ pub fn write_motion(path: &Path, format: MotionFormat, motion: &Motion) -> Resul
     };
     remove_temporary(folder_of(path));
     Ok(write_file(path, &bytes)?)
-}
-
-/// One row of the table of a motion. Positions in radians, or in the unit that a row says; the base's attitude turns base axes
-/// into inertial axes.
-#[derive(Debug, serde::Serialize)]
-struct Row<'a> {
-    time: f64,
-    joint: &'a str,
-    /// Of robots with joints that slide alone.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    unit: Option<&'static str>,
-    angle: f64,
-    rate: f64,
-    acceleration: f64,
-    jerk: f64,
-    base_w: f64,
-    base_x: f64,
-    base_y: f64,
-    base_z: f64,
-}
-
-/// The rows of a motion, by time, then by joint.
-fn rows(motion: &Motion) -> impl Iterator<Item = Row<'_>> {
-    let slides = motion.slides();
-    motion.time.iter().zip(&motion.base).enumerate().flat_map(move |(i, (&time, base))| {
-        motion.joints.iter().map(move |joint| {
-            let [angle, rate, acceleration, jerk] = joint.derivatives[i];
-            let [base_x, base_y, base_z, base_w] = base.coords.into();
-            Row {
-                time,
-                joint: &joint.name,
-                unit: slides.then_some(joint.kind.si_unit()),
-                angle,
-                rate,
-                acceleration,
-                jerk,
-                base_w,
-                base_x,
-                base_y,
-                base_z,
-            }
-        })
-    })
 }

@@ -3,11 +3,12 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::{ExportError, MotionFormat, intervals, write_motion};
+use super::{ExportError, MotionFormat, Record, intervals, write_motion};
 use crate::experiment::{Plan, Run};
 use crate::output::{file_name, unlike, write_folder};
 use crate::reorientation::exhibits::best::best_motions;
 use crate::reorientation::exhibits::words::AT_GOAL_DEG;
+use crate::reorientation::sampling::Sampling;
 
 /// What was written.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,10 +23,12 @@ pub struct WrittenMotions {
 }
 
 /// Writes the best motion of every instance that is a task into a folder of their own, whole or not at
-/// all. A file has the instance's label as its name, or `best` where there is none.
+/// all. A file has the instance's label as its name, or `best` where there is none. Without a sampling, each has its family's
+/// [`intervals`].
 pub fn write_motions(
     folder: &Path,
     format: MotionFormat,
+    sampling: Option<Sampling>,
     plan: &Plan,
     runs: &[Run],
 ) -> Result<WrittenMotions, ExportError> {
@@ -36,8 +39,10 @@ pub fn write_motions(
             let label = if label.is_empty() { "best" } else { label };
             let name = unlike(&file_name(label), &mut taken);
             missed += usize::from(best.residual_deg > AT_GOAL_DEG);
-            let path = folder.join(name).with_extension(format.extension());
-            write_motion(&path, format, &best.sample(intervals(best.problem.spec())))?;
+            let sampling = sampling.unwrap_or_else(|| intervals(best.problem.spec()).into());
+            sampling.check(best.duration)?;
+            let record = Record::new(&best.problem.task().robot, best.sample(sampling));
+            write_motion(&folder.join(name + format.ending()), format, &record)?;
         }
         Ok::<(), ExportError>(())
     })?;

@@ -6,11 +6,12 @@ use serde::Serialize;
 use super::planned::{Asked, Planned, PlannedJson, Spent};
 use super::{PlanError, Planner, Search};
 use crate::reorientation::excursions::PathLimit;
-use crate::reorientation::export::intervals;
+use crate::reorientation::export::{Record, intervals};
 use crate::reorientation::json::{ExcursionsJson, PeaksJson};
 use crate::reorientation::motion::Motion;
 use crate::reorientation::reach::Reach;
 use crate::reorientation::replayed::Replayed;
+use crate::reorientation::sampling::{Sampling, TooManySamples};
 use crate::search::Watch;
 use crate::straight::StraightPath;
 use crate::task::{Posture, Standing, Task};
@@ -162,13 +163,14 @@ impl LegMotion {
         }
     }
 
-    /// The motion at equally spaced times.
-    pub fn sample(&self, intervals: usize) -> Motion {
+    /// The motion, sampled.
+    pub fn sample(&self, sampling: impl Into<Sampling>) -> Motion {
+        let sampling = sampling.into();
         match self {
             Self::Planned(found) => {
-                found.problem.sample(&found.coefficients, found.assessment.duration, intervals)
+                found.problem.sample_at(&found.coefficients, found.assessment.duration, sampling)
             }
-            Self::Straight { task, points, .. } => Replayed::new(task, points).sample(intervals),
+            Self::Straight { task, points, .. } => Replayed::new(task, points).sample(sampling),
         }
     }
 
@@ -219,6 +221,24 @@ impl PlannedMission {
             }
         }
         whole.unwrap_or_else(|| Motion { time: Vec::new(), joints: Vec::new(), base: Vec::new() })
+    }
+
+    /// All motions as one for other tools. Each is sampled from its own start to its end; without a sampling, as suits it.
+    pub fn record(&self, sampling: Option<Sampling>) -> Result<Record<'_>, TooManySamples> {
+        sampling.unwrap_or_default().check(self.duration())?;
+        let sampled = |leg: &PlannedLeg| {
+            leg.motion.sample(sampling.unwrap_or_else(|| leg.motion.intervals().into()))
+        };
+        let mut legs = self.legs.iter();
+        let Some(first) = legs.next() else {
+            let nothing = Motion { time: Vec::new(), joints: Vec::new(), base: Vec::new() };
+            return Ok(Record::new(&self.ends.robot, nothing));
+        };
+        let mut record = Record::new(&first.motion.task().robot, sampled(first));
+        for leg in legs {
+            record.go_on(&leg.motion.task().robot, sampled(leg));
+        }
+        Ok(record)
     }
 
     /// As JSON.

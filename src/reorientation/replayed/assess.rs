@@ -7,6 +7,7 @@ use super::base::{BasePath, Seen};
 use super::faults::{Fault, faults, of_tool, on_the_way};
 use crate::reorientation::excursions::Excursions;
 use crate::reorientation::motion::{JointMotion, Motion};
+use crate::reorientation::sampling::Sampling;
 use crate::task::Task;
 use crate::trajectory::{Extent, Interpolation, Peak, Peaks, PointPath, Points};
 
@@ -130,7 +131,7 @@ impl<'a> Replayed<'a> {
         let played = ReadPath::of(task, reading, &path, &base);
         let extents = path.extents();
         let mut faults = faults(task, &path, played.residual, &played.peaks, &extents);
-        let excursions = Excursions::of(task, &sample(task, points, &base, LOOKS));
+        let excursions = Excursions::of(task, &sample(task, points, &base, LOOKS.into()));
         faults.extend(on_the_way(&excursions.used));
         faults.extend(of_tool(task, excursions.tool_miss.as_ref(), points.duration()));
         Self {
@@ -174,17 +175,15 @@ impl<'a> Replayed<'a> {
         !self.faults.iter().any(|fault| fault.kind.breaks_a_limit())
     }
 
-    /// The motion at `intervals + 1` equally spaced times.
-    pub fn sample(&self, intervals: usize) -> Motion {
-        sample(self.task, self.points, &self.base, intervals)
+    /// The motion, sampled.
+    pub fn sample(&self, sampling: impl Into<Sampling>) -> Motion {
+        sample(self.task, self.points, &self.base, sampling.into())
     }
 }
 
-fn sample(task: &Task, points: &Points, base: &BasePath, intervals: usize) -> Motion {
+fn sample(task: &Task, points: &Points, base: &BasePath, sampling: Sampling) -> Motion {
     let path = points.played();
-    let duration = points.duration();
-    let time = |i: usize| duration * (i as f64 / intervals as f64);
-    let time: Vec<f64> = (0..=intervals).map(time).collect();
+    let time = sampling.times(points.duration());
     let joints = task.robot.joints().enumerate().map(|(joint, own)| {
         let at = |&time: &f64| {
             let (segment, share) = path.place(time);

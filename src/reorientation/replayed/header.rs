@@ -6,6 +6,7 @@
 use super::error::{Source, TrajectoryError, cut, listed};
 use super::units::{AngleUnit, Measure, UNREAD, split_unit};
 use crate::input::nearest;
+use crate::reorientation::export;
 use crate::robot::{JointKind, Robot};
 
 /// What a column has: of a joint or, in a long table, of the row's joint.
@@ -35,19 +36,8 @@ pub(super) struct Header {
     pub(super) ignored: Vec<String>,
 }
 
-/// A motion as this program exports it, in radians.
-const OWN: [&str; 10] = [
-    "time",
-    "joint",
-    "angle",
-    "rate",
-    "acceleration",
-    "jerk",
-    "base_w",
-    "base_x",
-    "base_y",
-    "base_z",
-];
+/// Columns of an exported table with a row for each time and joint, but for its `unit`; those after them may be missing.
+const LEAST_OWN: usize = 10;
 
 const TIMES: [&str; 6] = ["time", "t", "__time", "timestamp", "time_from_start", "%time"];
 
@@ -95,8 +85,13 @@ impl Header {
 
     fn of(names: &[String], robot: &Robot, unit: Option<AngleUnit>) -> Result<Self, String> {
         let joints: Vec<&str> = robot.joints().map(|joint| joint.name).collect();
-        let columns: Vec<Column> =
-            names.iter().map(|name| Column::of(name.trim(), &joints)).collect();
+        let trimmed = || names.iter().map(|name| name.trim());
+        let is_wide_own = trimmed().eq(export::header(robot.joints().map(|j| (j.name, j.kind))));
+        let columns: Vec<Column> = if is_wide_own {
+            (0..names.len()).map(|place| Column::of_wide(place, joints.len())).collect()
+        } else {
+            trimmed().map(|name| Column::of(name, &joints)).collect()
+        };
         let find = |is: fn(&Column) -> bool| columns.iter().position(is);
         let Some(time) = find(|column| matches!(column, Column::Time(_))) else {
             let found = listed(names.iter().map(String::as_str));
@@ -135,13 +130,15 @@ impl Header {
             check_kinds(&units, names, robot)?;
         }
         // Where joints slide, exported tables say the unit row by row, which is always SI.
-        let is_own = names.iter().map(|name| name.trim()).filter(|name| *name != UNIT).eq(OWN);
-        let has_units = joint.is_some() && names.iter().any(|name| name.trim() == UNIT);
+        let own = [vec!["time", "joint"], export::number_columns()].concat();
+        let found: Vec<&str> = trimmed().filter(|name| *name != UNIT).collect();
+        let is_own = is_wide_own || found.len() >= LEAST_OWN && own.starts_with(&found);
+        let has_units = joint.is_some() && trimmed().any(|name| name == UNIT);
         if has_units && !is_own {
             return Err("found a column `unit`, expected the unit of angles in the names of the columns, or by `--unit`".to_owned());
         }
         if is_own {
-            // The jerk and the base follow from the rest.
+            // Jerks, torques and the base follow from the rest.
             ignored.clear();
         }
         let stated = if is_own { Some(AngleUnit::Rad) } else { stated_unit(&units, names)? };
@@ -232,6 +229,17 @@ fn stated_unit(units: &[(Values, Measure)], names: &[String]) -> Result<Option<A
 }
 
 impl Column {
+    /// What stands there in an exported table with a row for each time.
+    fn of_wide(place: usize, joints: usize) -> Self {
+        match place.checked_sub(1) {
+            None => Self::Time(Some(1.0)),
+            Some(place) if place < UNREAD * joints => {
+                Self::Of { joint: Some(place % joints), order: place / joints, unit: None }
+            }
+            Some(_) => Self::Other,
+        }
+    }
+
     fn of(name: &str, joints: &[&str]) -> Self {
         let exact = |text: &str| joints.iter().position(|joint| *joint == text);
         if let Some(joint) = exact(name) {
