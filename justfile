@@ -42,6 +42,10 @@ exchange:
 page:
     tests/page/run.sh
 
+# files of motions, read by the tools whose formats they are, and played by MuJoCo; needs Python 3.11
+motions:
+    tests/motions/run.sh
+
 # figures as PDF, SVG and PNG read by other tools; needs Python 3.11
 figures:
     tests/figures/run.sh

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::folder::{Folder, stderr, stdout};
+use crate::replays::said;
 
 const TWICE: &str = "name = 'twice'\nseeds = 3\nbudget = { evaluations = 300 }\n[sweep]\nterms = [2, 3]\n\
     [[optimiser]]\npso = { population = 20 }\n[[optimiser]]\npso = { population = 20, cognitive = 1.5 }\n\
@@ -239,14 +240,41 @@ fn best_motions_are_exported() {
     let folder = Folder::new().with("two.toml", text);
     assert!(folder.run(&["run", "two.toml", "--out", "results"]).status.success());
     assert!(folder.run(&["report", "results"]).status.success());
-    for format in ["csv", "parquet", "yaml"] {
+    for (format, ending) in [
+        ("csv", "csv"),
+        ("wide-csv", "wide.csv"),
+        ("parquet", "parquet"),
+        ("mat", "mat"),
+        ("yaml", "yaml"),
+        ("goal-yaml", "goal.yaml"),
+        ("mujoco", "mujoco"),
+    ] {
         let output = folder.run(&["export", "results", "--format", format, "--out", format]);
         assert!(output.status.success(), "{}", stderr(&output));
-        let names: Vec<String> = files(&folder.path().join(format))
-            .iter()
-            .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned())
-            .collect();
-        assert_eq!(names, ["terms_2", "terms_3"].map(|name| format!("{name}.{format}")));
+        let entries = std::fs::read_dir(folder.path().join(format)).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        assert_eq!(names, ["terms_2", "terms_3"].map(|name| format!("{name}.{ending}")));
+    }
+    let sampled = ["export", "results", "--format", "wide-csv", "--rate", "50", "--out", "sampled"];
+    assert!(folder.run(&sampled).status.success());
+    let path = folder.path().join("sampled/terms_2.wide.csv");
+    let times: Vec<f64> = csv::Reader::from_path(path)
+        .unwrap()
+        .records()
+        .map(|row| row.unwrap()[0].parse().unwrap())
+        .collect();
+    let steps = times.len() - 1;
+    assert!(times[..steps].iter().enumerate().all(|(k, time)| *time == k as f64 / 50.0));
+    for (args, expected) in [
+        (["--format", "ioh", "--dt", "0.1"], "--dt is for motions that are written"),
+        (["--format", "csv", "--dt", "1e-9"], "expected 1000000 samples or fewer"),
+    ] {
+        let refused = folder.run(&[&["export", "results", "--out", "none"], &args[..]].concat());
+        let message = said(&stderr(&refused));
+        assert!(!refused.status.success() && message.contains(expected), "{message}");
+        assert!(!folder.path().join("none").exists());
     }
     let mut best = csv::Reader::from_path(folder.path().join("results/tables/best.csv")).unwrap();
     let column = best.headers().unwrap().iter().position(|name| name == "t_f [s]").unwrap();

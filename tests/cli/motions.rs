@@ -249,6 +249,19 @@ fn a_goal_has_the_trajectory() {
     assert_eq!(goal, format!("trajectory:\n{within}\n{rest}"));
 }
 
+#[test]
+fn a_mat_file_is_not_read() {
+    let folder = servicer();
+    plan(&folder, "task.toml", &["--motion", "m.mat"]);
+    let file = fs::read(folder.path().join("m.mat")).unwrap();
+    assert!(file.starts_with(b"MATLAB 5.0 MAT-file") && file.len() % 8 == 0);
+    let output = folder.run(&["replay", "m.mat", "--task", "task.toml"]);
+    assert_eq!(output.status.code(), Some(1));
+    let message = said(&stderr(&output));
+    let expected = "m.mat: MAT-files are written, but not read, expected a name in .csv, .parquet, .yaml or .json";
+    assert!(message.contains(expected), "{message}");
+}
+
 /// A folder that is whole; what MuJoCo makes of it is for `tests/motions/`.
 #[test]
 fn a_folder_for_mujoco_is_written_once() {

@@ -8,15 +8,13 @@ use crate::reorientation::export::{Record, number_columns};
 /// One row per time and joint: time \[s\], joint, where joints slide the unit of its position, and the numbers that exports
 /// have.
 pub(in crate::reorientation) fn motion_table(record: &Record<'_>) -> PolarsResult<Table> {
-    let texts = |name: &str, of: &dyn Fn(usize) -> &str| {
-        let values: Vec<&str> = record.rows().map(|(_, joint)| of(joint)).collect();
-        Column::new(name.into(), values)
-    };
+    let own = |joint: usize| &record.joints[joint].motion;
     let times: Vec<f64> = record.rows().map(|(time, _)| record.time[time]).collect();
-    let mut columns = vec![Column::new("time".into(), times)];
-    columns.push(texts("joint", &|joint| record.joints[joint].motion.name.as_str()));
+    let joints: Vec<&str> = record.rows().map(|(_, joint)| &*own(joint).name).collect();
+    let mut columns = vec![Column::new("time".into(), times), Column::new("joint".into(), joints)];
     if record.slides() {
-        columns.push(texts("unit", &|joint| record.joints[joint].motion.kind.si_unit()));
+        let units: Vec<&str> = record.rows().map(|(_, joint)| own(joint).kind.si_unit()).collect();
+        columns.push(Column::new("unit".into(), units));
     }
     let names = number_columns();
     let mut numbers = vec![Vec::with_capacity(columns[0].len()); names.len()];

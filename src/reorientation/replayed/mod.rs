@@ -33,6 +33,8 @@ enum Format {
     Table,
     Parquet,
     Message,
+    /// Which is written, but not read.
+    Mat,
 }
 
 impl Format {
@@ -42,6 +44,7 @@ impl Format {
             "csv" => Some(Self::Table),
             "parquet" => Some(Self::Parquet),
             "yaml" | "yml" | "json" => Some(Self::Message),
+            "mat" => Some(Self::Mat),
             _ => None,
         }
     }
@@ -57,7 +60,7 @@ pub struct GivenTrajectory {
 }
 
 impl GivenTrajectory {
-    /// Whether a file is one by its name: `.csv`, `.parquet`, `.yaml`, `.yml` or `.json`.
+    /// Whether a file is one by its name: `.csv`, `.parquet`, `.yaml`, `.yml` or `.json`; or `.mat`, which is refused.
     pub fn has_name(path: &Path) -> bool {
         Format::of(path).is_some()
     }
@@ -89,10 +92,14 @@ impl GivenTrajectory {
                 ));
             }
             Some(Format::Message) => (yaml::read(file, robot, source)?, Vec::new()),
-            None => {
-                return Err(source.error(
-                    "cannot tell the format, expected a name in .csv, .parquet, .yaml or .json",
-                ));
+            Some(Format::Mat) | None => {
+                let found = if format.is_some() {
+                    "MAT-files are written, but not read"
+                } else {
+                    "cannot tell the format"
+                };
+                return Err(source
+                    .error(format!("{found}, expected a name in .csv, .parquet, .yaml or .json")));
             }
         };
         Ok(Self { points, ignored })
