@@ -256,7 +256,7 @@ fn a_mat_file_is_not_read() {
     let file = fs::read(folder.path().join("m.mat")).unwrap();
     assert!(file.starts_with(b"MATLAB 5.0 MAT-file") && file.len() % 8 == 0);
     let output = folder.run(&["replay", "m.mat", "--task", "task.toml"]);
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     let message = said(&stderr(&output));
     let expected = "m.mat: MAT-files are written, but not read, expected a name in .csv, .parquet, .yaml or .json";
     assert!(message.contains(expected), "{message}");
@@ -280,6 +280,39 @@ fn a_folder_for_mujoco_is_written_once() {
     let some = folder.run(&["plan", "task.toml", "--motion", "n.mujoco", "--joints", "left_*"]);
     assert_eq!(some.status.code(), Some(2));
     assert!(stderr(&some).contains("a motion for MuJoCo has all joints"), "{}", stderr(&some));
+}
+
+/// Of a task of several motions each has its own samples; the base stays where it is when a target is caught, though the system's
+/// centre of mass is elsewhere then.
+#[test]
+fn several_motions_are_one_file() {
+    let mission = "[task]\nrobot = 'ur5e'\n[[task.via]]\njoints_deg = [20, -80, 80, -80, -60, 20]\n\
+        capture = { mass = 40, centre_of_mass = [0, 0, 0.2] }\n\
+        [task.goal]\njoints_deg = [30, -60, 70, -70, -60, 20]\n";
+    let folder = Folder::new().with("mission.toml", mission);
+    let plan = |file| {
+        let args = ["plan", "mission.toml", "--json", "--family", "sine-polynomial", "--dt", "0.1"];
+        folder.run(&[&args[..], &["--motion", file]].concat())
+    };
+    let output = plan("m.wide.csv");
+    assert!(output.status.success(), "{}", stderr(&output));
+    let planned: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let table = columns(&folder, "m.wide.csv");
+    let time = &table["time [s]"];
+    let first = number(&planned["legs"][0]["t_f"]);
+    near(&planned["t_f"], time[time.len() - 1], 1e-9);
+    let end = time.iter().position(|time| *time == first).unwrap();
+    assert!(end > 2 && (time[end + 1] - first - 0.1).abs() < 1e-12);
+    for key in ["x", "y", "z"] {
+        let place = &table[&format!("base_position_{key} [m]")];
+        assert!(place[0] == 0.0 && place.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 0.02));
+        let rest = (place[end + 1] - place[end]).abs();
+        assert!(rest < 1e-3, "{rest}");
+    }
+    let refused = plan("m.mujoco");
+    let message = said(&stderr(&refused));
+    assert!(message.contains("found a load that is caught or let go of on the way"), "{message}");
+    assert!(!folder.path().join("m.mujoco").exists());
 }
 
 #[test]
