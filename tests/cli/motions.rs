@@ -254,7 +254,7 @@ fn a_mat_file_is_not_read() {
     let folder = servicer();
     plan(&folder, "task.toml", &["--motion", "m.mat"]);
     let file = fs::read(folder.path().join("m.mat")).unwrap();
-    assert!(file.starts_with(b"MATLAB 5.0 MAT-file") && file.len() % 8 == 0);
+    assert!(file.starts_with(b"MATLAB 5.0 MAT-file") && file.len().is_multiple_of(8));
     let output = folder.run(&["replay", "m.mat", "--task", "task.toml"]);
     assert_eq!(output.status.code(), Some(2));
     let message = said(&stderr(&output));
