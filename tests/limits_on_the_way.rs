@@ -5,9 +5,10 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use driftless::input::Document;
-use driftless::optimiser::Scp;
+use driftless::optimiser::{Scp, Settings};
 use driftless::reorientation::{
-    Accuracy, Excursions, FamilyName, Formulated, Planned, Reach, Reorientation, Search, TaskFile,
+    Accuracy, Excursions, FamilyChoice, FamilyName, Formulated, Planned, Planner, Reach,
+    Reorientation, Search, TaskFile,
 };
 use driftless::search::Watch;
 use driftless::trajectory::Spline;
@@ -64,6 +65,23 @@ fn limits_bind_and_hold() {
         let share = share(&found, limit);
         assert!(share <= 1.0 + 1e-6, "{share}, {name}");
         assert!(share >= 0.999, "{share}, {name}");
+    }
+}
+
+/// A search looks at fewer places than a plan's spline has pieces, and what it finds here breaks its limits between them. Starts
+/// followed again with the goal weighing more came to 7.02 s.
+#[test]
+fn plans_keep_limits_between_the_places_of_a_search() {
+    let text = "[task]\nlimits = { clearance_m = 0.05, base_turn_deg = 15 }\n";
+    let document = Document::embedded("task.toml", text);
+    let settings = Settings::Scp(Scp::default());
+    let planner = Planner::read(&document, FamilyChoice::default(), settings).unwrap();
+    let found = planner.plan(1, 150_000, &Watch::default()).unwrap();
+    assert_eq!(found.reach, Reach::Reached);
+    assert!(found.assessment.duration < 6.6, "{}", found.assessment.duration);
+    for limit in ["clearance", "base_turn"] {
+        let share = share(&found, limit);
+        assert!(share <= 1.0 + 1e-4, "{limit}: {share}");
     }
 }
 

@@ -276,3 +276,108 @@ fn corrected(here: &Bent, there: &Bent, d: &DVector<f64>) -> Bent {
     }
     bent
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::search::{
+        Bend, Bounds, ErrorSlopes, Evaluation, Failure, LinearLimits, Problem, Rng, Timed, Watch,
+    };
+
+    /// Both `|x_0 + 5|` and a duration `3 + x_0 + ½ c (x_0 − 2)²` fall from `x_0 = 2` on; the duration is said to bend by `c'`.
+    struct Falling {
+        bounds: Bounds,
+        bend: f64,
+        told: f64,
+    }
+
+    impl Falling {
+        fn first() -> Vec<f64> {
+            let mut gradient = vec![0.0; 6];
+            gradient[0] = 1.0;
+            gradient
+        }
+
+        /// The shares of the folds after each of some steps.
+        fn shares<const STEPS: usize>(bend: f64, told: f64, first: f64) -> [f64; STEPS] {
+            let problem = Self { bounds: Bounds::cube(6, [-2.0, 2.0]), bend, told };
+            let (watch, settings) = (Watch::default(), Scp::default());
+            let mut oracle = Oracle::new(&problem, 1_000, &watch);
+            let start = [2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let weights = problem.weights();
+            let mut search = Search::new(&settings, &mut oracle, weights, &start).unwrap();
+            search.fold_share = first;
+            std::array::from_fn(|_| {
+                assert_eq!(search.step(), Ok(None));
+                search.fold_share
+            })
+        }
+    }
+
+    impl Problem for Falling {
+        fn bounds(&self) -> &Bounds {
+            &self.bounds
+        }
+
+        fn evaluate(&self, x: &[f64]) -> Result<Evaluation, Failure> {
+            Ok(self.weights().evaluation(&self.parts(x)?))
+        }
+
+        fn timed(&self) -> Option<&dyn Timed> {
+            Some(self)
+        }
+    }
+
+    impl Timed for Falling {
+        fn limits(&self, _: &[f64]) -> Result<LinearLimits, Failure> {
+            Ok(LinearLimits::default())
+        }
+
+        fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure> {
+            let slopes = DMatrix::from_row_slice(1, 6, &Self::first());
+            Ok(ErrorSlopes { value: DVector::from_element(1, x[0] + 5.0), slopes })
+        }
+
+        fn bent(&self, x: &[f64]) -> Result<Bent, Failure> {
+            let (d, mut gradient) = (x[0] - 2.0, Self::first());
+            gradient[0] += self.bend * d;
+            let duration = Piece::new(0, 3.0 + x[0] + 0.5 * self.bend * d * d, gradient);
+            Ok(Bent::new(vec![duration], Vec::new(), 0.0))
+        }
+
+        fn bends(&self, _: &[f64]) -> Result<Vec<Bend>, Failure> {
+            Ok(Vec::new())
+        }
+
+        fn folds(&self, _: &[f64], _: &[(PieceId, f64)]) -> Result<Vec<Fold>, Failure> {
+            let direction = DVector::from_vec(Self::first());
+            Ok(vec![Fold { direction, curvature: self.told }])
+        }
+
+        fn weights(&self) -> TimedWeights {
+            TimedWeights { time: 1.0, error: 1.0, excess: 1.0 }
+        }
+
+        fn start(&self, _: &mut Rng, _: f64) -> Vec<f64> {
+            vec![0.0; 6]
+        }
+    }
+
+    /// Of a straight slope a step within the region, by a model that bends, gains twice what it promises. The first step has no
+    /// multipliers yet, and so no folds.
+    #[test]
+    fn folds_that_hold_steps_back_are_taken_for_less() {
+        assert_eq!(Falling::shares(0.0, 1e3, 1.0), [1.0, 0.25, 0.0625]);
+        // Steps to the region's wall are not held back.
+        assert_eq!(Falling::shares(0.0, 1e-3, 1.0), [1.0; 3]);
+    }
+
+    /// The first step, of 0.2, promises 0.4; a bend of 20 takes all of that away.
+    #[test]
+    fn folds_are_taken_for_more_where_steps_keep_too_little() {
+        assert_eq!(Falling::shares(20.0, 20.0, 0.125), [0.5]);
+        assert_eq!(Falling::shares(20.0, 20.0, 0.5), [1.0]);
+    }
+}

@@ -16,6 +16,7 @@ pub use remark::Remark;
 use toml::Spanned;
 pub use walls::Walls;
 
+use super::accuracy::Accuracy;
 use super::any::SearchedFamily;
 use super::boxes::Boxes;
 use super::family::FamilyName;
@@ -26,7 +27,7 @@ use super::settings::{TaskFile, TaskProblem, TrajectoryTable};
 use super::spline_box::SplineBox;
 use crate::input::{Document, InputError};
 use crate::optimiser::{Optimiser, Scp, Settings};
-use crate::search::{Failure, Oracle, Rng, Stop, Watch};
+use crate::search::{Failure, Oracle, Problem as _, Rng, Stop, Watch};
 use crate::task::{Mission, Task};
 use crate::trajectory::Spline;
 
@@ -35,6 +36,10 @@ const SPLINE_STARTS: usize = 20;
 
 /// Share of J that `scp` is content to miss there.
 const SPLINE_TOLERANCE: f64 = 1e-6;
+
+/// A share of J that peaks between the places of a search may add to it, and by how much finer it first goes on where they add more.
+const PASSED_OVER: f64 = 1e-5;
+const FINER: usize = 4;
 
 /// How often more starts are followed where no motion reaches the goal, and by how much less time weighs each time.
 const MORE_ROUNDS: u64 = 2;
@@ -221,11 +226,25 @@ impl Planner {
         };
         let (optimiser, longest) = (settings.optimiser(), boxes.duration[1]);
         let own = free_form(problem.clone())?;
-        let mut found = search.best(optimiser, &own, &own, longest)?;
+        let round = |search: Search<'_>, task: Reorientation<Spline>| {
+            let [finer, fine] = finer(task.accuracy()).map(|a| free_form(task.with_accuracy(a)));
+            let [searched, finer, fine] = [free_form(task)?, finer?, fine?];
+            let mut found = search.best(optimiser, &searched, &own, longest)?;
+            if let Settings::Scp(scp) = &settings {
+                for [last, next] in [[&searched, &finer], [&finer, &fine]] {
+                    if !is_passed_over(&found.coefficients, last, &fine)? {
+                        break;
+                    }
+                    found = search.onward(scp, found, next, &own, longest)?;
+                }
+            }
+            Ok::<_, PlanError>(found)
+        };
+        let mut found = round(search, problem.clone())?;
         // The longer motions are, the less their time may weigh if the goal is to count.
         let own_weight = 1.0 - problem.task().base_weight;
         let mut time_weight = own_weight.min(1.0 / found.assessment.duration);
-        for round in 1..=MORE_ROUNDS {
+        for number in 1..=MORE_ROUNDS {
             let left = search.budget - found.spent.evaluations;
             if found.reach != Reach::NotFound || found.interrupted || left == 0 {
                 break;
@@ -233,16 +252,42 @@ impl Planner {
             time_weight /= LESS_TIME;
             let task = Task { base_weight: 1.0 - time_weight, ..(**problem.task()).clone() };
             let (family, accuracy) = (problem.family().clone(), problem.accuracy());
-            let demanding = free_form(Reorientation::over(Arc::new(task), family, accuracy))?;
-            let seed = search.seed.wrapping_add(round);
-            let more = Search { seed, budget: left, ..search };
-            found = found.or(more.best(optimiser, &demanding, &own, longest)?);
+            let demanding = Reorientation::over(Arc::new(task), family, accuracy);
+            let seed = search.seed.wrapping_add(number);
+            found = found.or(round(Search { seed, budget: left, ..search }, demanding)?);
         }
         Ok(found)
     }
 
     fn refused(&self, error: &dyn std::error::Error) -> InputError {
         self.document.error_at(0..0, error, None)
+    }
+}
+
+/// How finely a motion is evaluated that goes on with what a search passed over: first somewhat, then as it is judged.
+fn finer(Accuracy { attitude_steps, peak_intervals }: Accuracy) -> [Accuracy; 2] {
+    [Accuracy { attitude_steps: FINER * attitude_steps, peak_intervals }, Accuracy::FINE]
+}
+
+/// Whether a motion costs more the finer it is evaluated: on the way there are peaks between the places that a search looks at.
+fn is_passed_over(
+    coefficients: &[f64],
+    searched: &Formulated<Spline>,
+    fine: &Formulated<Spline>,
+) -> Result<bool, Failure> {
+    let [searched, fine] = [searched, fine].map(|problem| problem.evaluate(coefficients));
+    Ok(fine?.cost > (1.0 + PASSED_OVER) * searched?.cost)
+}
+
+/// Follows one start.
+struct Onward<'a> {
+    scp: Scp,
+    start: &'a [f64],
+}
+
+impl Optimiser for Onward<'_> {
+    fn minimise(&self, oracle: &mut Oracle<'_>, _: &mut Rng) -> Result<(), Stop> {
+        self.scp.follow(oracle, self.start).map(drop)
     }
 }
 
@@ -297,6 +342,25 @@ impl Search<'_> {
             other: None,
             excursions: OnceLock::new(),
         })
+    }
+
+    /// Goes on from what was found, with the same task evaluated more finely.
+    fn onward(
+        self,
+        scp: &Scp,
+        found: Planned,
+        finer: &Formulated<Spline>,
+        problem: &Formulated<Spline>,
+        longest: f64,
+    ) -> Result<Planned, PlanError> {
+        let budget = self.budget - found.spent.evaluations;
+        if found.interrupted || budget == 0 {
+            return Ok(found);
+        }
+        let scp = Scp { first_weight: f64::INFINITY, tolerance: PASSED_OVER, ..scp.clone() };
+        let onward = Onward { scp, start: &found.coefficients };
+        let more = Search { budget, ..self }.best(&onward, finer, problem, longest)?;
+        Ok(Planned { spent: found.spent.and(more.spent), ..more })
     }
 
     /// The same among sine polynomials, whose box is a choice.

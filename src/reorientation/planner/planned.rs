@@ -134,7 +134,7 @@ pub struct PlannedJson<'a> {
 }
 
 impl Planned {
-    /// The other one where it reaches the goal or ends nearer to it; has spent what both have.
+    /// The better one; has spent what both have.
     pub(super) fn or(self, other: Self) -> Self {
         let spent = self.spent.and(other.spent);
         let interrupted = self.interrupted || other.interrupted;
@@ -148,9 +148,13 @@ impl Planned {
         Robustness::of(&*self.problem, &self.coefficients).ok().flatten()
     }
 
-    /// Whether it reaches its goal or ends nearer to it.
+    /// Whether it reaches its goal, ends nearer to it or, where both are within its tolerance, breaks limits by less.
     pub(super) fn is_better_than(&self, other: &Self) -> bool {
-        self.reach == Reach::Reached || self.assessment.residual() < other.assessment.residual()
+        let miss = |Self { problem, assessment, .. }: &Self| {
+            let residual = assessment.residual().max(problem.task().goal_tolerance);
+            [residual, assessment.penalty()]
+        };
+        self.reach == Reach::Reached || miss(self) < miss(other)
     }
 
     /// As JSON.
