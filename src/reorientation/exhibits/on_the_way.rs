@@ -14,7 +14,7 @@ pub(super) fn on_the_way(motion: &Motion, task: &Task) -> Option<Figure> {
     let limited = limited(task, motion);
     let end = motion.time.last().copied().unwrap_or(1.0);
     let panel = |(index, limited): (usize, &Limited)| {
-        let Limited { name, unit, limit, is_least, values } = limited;
+        let Limited { name, unit, limit, is_least, values, .. } = limited;
         let line = Line::over_time("", Stroke::of(0), &motion.time, values.iter().copied());
         let bound = if *is_least { "least" } else { "limit" };
         let told = if index == 0 || *is_least { bound } else { "" };
