@@ -5,7 +5,7 @@ use std::sync::Arc;
 use driftless::input::Document;
 use driftless::optimiser::{Optimiser, Scp};
 use driftless::reorientation::{
-    Accuracy, AnyReorientation, FamilySpec, Formulated, Formulation, Robustness, TaskFile,
+    Accuracy, FamilySpec, Formulated, Formulation, Robustness, TaskFile,
 };
 use driftless::robot::Robot;
 use driftless::search::{Oracle, Problem, Rng, Watch};
