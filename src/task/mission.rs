@@ -168,12 +168,12 @@ impl TaskTable {
             Some(tool) => (Place::Tool(tool.get_ref().clone()), tool.span()),
             None => (Place::Joints(ends.goal.joints.clone()), 0..0),
         };
-        if let Place::Tool(tool) = &place {
-            if tool.straights()[1].is_some() {
-                let message = "found `retreat_m` at the goal, expected the goal to be the end";
-                let help = "a `[[task.via]]` may be left straight back".to_owned();
-                return Err(document.error_at(span, message, Some(help)));
-            }
+        if let Place::Tool(tool) = &place
+            && tool.straights()[1].is_some()
+        {
+            let message = "found `retreat_m` at the goal, expected the goal to be the end";
+            let help = "a `[[task.via]]` may be left straight back".to_owned();
+            return Err(document.error_at(span, message, Some(help)));
         }
         let (name, base) = ("goal".to_owned(), ends.goal.base);
         stops.push(Stop { name, place, base, span, load: Load::Same });
@@ -329,7 +329,7 @@ impl Mission {
         for task in tasks {
             let leg = match &approach {
                 None => Leg { task, approach: None },
-                Some(straight) => match self.approached(task, straight) {
+                Some(straight) => match Leg::approached(task, straight) {
                     Ok(leg) => leg,
                     Err(error) => {
                         refused.get_or_insert_with(|| self.blocked(&error, span, "approach_m"));
@@ -349,14 +349,16 @@ impl Mission {
             _ => Ok(legs),
         }
     }
+}
 
-    /// A leg whose end is approached straight: the motion before ends where the way back from there leads.
-    fn approached(&self, task: Task, straight: &Straight) -> Result<Leg, StraightError> {
+impl Leg {
+    /// One whose end is approached straight: the motion before ends where the way back from there leads.
+    fn approached(task: Task, straight: &Straight) -> Result<Self, StraightError> {
         let back = straight.path(&task.robot, &task.goal.joints, task.goal.base)?;
         let [_, joints] = back.ends();
         let before = Posture { joints: joints.to_vec(), base: back.base[1] };
         let approach = Task { start: before.clone(), ..task.clone() };
         let task = Task { goal: before, tool: None, ..task };
-        Ok(Leg { task, approach: Some((back.reversed(), approach)) })
+        Ok(Self { task, approach: Some((back.reversed(), approach)) })
     }
 }

@@ -81,18 +81,17 @@ impl Planner {
             let choices = mission.legs(stop, &at)?;
             let search = Search { seed, budget, watch };
             let is_there = choices.iter().position(|leg| leg.task.already_there().is_some());
-            let chosen = match is_there {
-                Some(leg) => leg,
-                None => {
-                    let tasks = choices.iter().map(|leg| leg.task.clone()).collect();
-                    let (leg, found) = self.plan_one_of(tasks, search)?;
-                    let is_over = found.interrupted || found.reach != Reach::Reached;
-                    go(name.to_owned(), LegMotion::Planned(Box::new(found)), &mut at);
-                    if is_over {
-                        break;
-                    }
-                    leg
+            let chosen = if let Some(leg) = is_there {
+                leg
+            } else {
+                let tasks = choices.iter().map(|leg| leg.task.clone()).collect();
+                let (leg, found) = self.plan_one_of(tasks, search)?;
+                let is_over = found.interrupted || found.reach != Reach::Reached;
+                go(name.to_owned(), LegMotion::Planned(Box::new(found)), &mut at);
+                if is_over {
+                    break;
                 }
+                leg
             };
             if let Some((path, task)) = &choices[chosen].approach {
                 let task = Task { start: at.posture.clone(), ..task.clone() };
@@ -288,14 +287,17 @@ struct LegJson<'a> {
 #[serde(tag = "kind", rename_all = "kebab-case")]
 enum LegMotionJson<'a> {
     Planned(Box<PlannedJson<'a>>),
-    Straight {
-        t_f: f64,
-        distance_m: f64,
-        reached: bool,
-        peaks: PeaksJson,
-        #[serde(flatten)]
-        excursions: ExcursionsJson,
-    },
+    Straight(Box<StraightJson>),
+}
+
+#[derive(Debug, Serialize)]
+struct StraightJson {
+    t_f: f64,
+    distance_m: f64,
+    reached: bool,
+    peaks: PeaksJson,
+    #[serde(flatten)]
+    excursions: ExcursionsJson,
 }
 
 impl PlannedLeg {
@@ -307,13 +309,13 @@ impl PlannedLeg {
             LegMotion::Straight { task, points, distance } => {
                 let replayed = Replayed::new(task, points);
                 let peaks = &replayed.played.peaks;
-                LegMotionJson::Straight {
+                LegMotionJson::Straight(Box::new(StraightJson {
                     t_f: points.duration(),
                     distance_m: *distance,
                     reached: replayed.is_as_asked(),
                     peaks: PeaksJson::new(peaks, &task.robot),
                     excursions: ExcursionsJson::new(&replayed.excursions, task, peaks),
-                }
+                }))
             }
         };
         LegJson { leg: &self.name, motion }
