@@ -58,7 +58,7 @@ pub use exhibits::{FoundBy, motion_scene};
 pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 #[cfg(feature = "harness")]
 pub use export::write_motions;
-pub use export::{ExportError, INTERVALS, MotionFormat, Record, intervals, write_motion};
+pub use export::{ExportError, MotionFormat, Record, intervals, write_motion};
 pub use family::{FamilyName, FamilySpec};
 pub use fitness::{Assessment, Reorientation};
 pub use formulation::{Formulated, Formulation};
@@ -79,7 +79,7 @@ pub use replayed::{
     Replayed, ReplayedJson, TrajectoryError,
 };
 pub use robustness::{Robustness, RobustnessJson};
-pub use sampling::{MOST_SAMPLES, Sampling, TooManySamples};
+pub use sampling::{INTERVALS, MOST_SAMPLES, Sampling, TooManySamples};
 pub use settings::{TaskFile, TaskProblem, TrajectoryTable};
 pub use spline_box::SplineBox;
 #[cfg(feature = "harness")]

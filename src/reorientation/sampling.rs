@@ -1,6 +1,7 @@
 //! At which times a motion is sampled.
 
-use super::export::INTERVALS;
+/// Intervals between the samples of an exported motion.
+pub const INTERVALS: usize = 500;
 
 /// Most samples of a motion, as many as `replay` reads.
 pub const MOST_SAMPLES: usize = 1_000_000;

@@ -15,16 +15,13 @@ mod wide;
 use std::path::Path;
 
 use super::family::FamilySpec;
-use super::sampling::TooManySamples;
+use super::sampling::{INTERVALS, TooManySamples};
 use crate::output::{FileError, folder_of, remove_temporary, write_file};
 pub(super) use long::number_columns;
 #[cfg(feature = "harness")]
 pub use motions::write_motions;
 pub use record::Record;
 pub(super) use wide::header;
-
-/// Intervals between the samples of an exported motion.
-pub const INTERVALS: usize = 500;
 
 /// Intervals between the samples of an exported motion of a family: of splines as many more as cut all pieces into equal parts,
 /// so that quintics through the samples, which robots' controllers play, are the spline again.
