@@ -1,4 +1,4 @@
-//! The tool on a straight line in inertial space, its orientation kept, while the base floats.
+//! The tool on a straight line in inertial space, with or without its orientation kept, while the base floats.
 //!
 //! The generalised Jacobian of Umetani and Yoshida (DOI 10.1109/70.34766) gives the joints' rates, and with them the base's: both
 //! follow from the line, whatever the speed along it.
@@ -46,8 +46,10 @@ pub enum StraightError {
 /// Steps of a motion along the line.
 const STEPS: usize = 256;
 
-/// What joints may leave of a unit of the tool's way, and the least singular value of the Jacobian that counts.
+/// Largest residual of the tool's unit velocity.
 const FOLLOWS: f64 = 1e-9;
+
+/// Singular values of the Jacobian below this are zero.
 const SINGULAR: f64 = 1e-6;
 
 /// Joints that go further for a metre of the tool's way \[rad or m\] are too near to a singular configuration to follow it.
@@ -86,7 +88,7 @@ impl Straight {
         let along = Vector3::from(tool.rotation * Vec3::of(&self.direction));
         let rows = if self.keeps_orientation { 6 } else { 3 };
         let line = Line { robot, direction: base * along.normalize(), rows };
-        // Of the difference that gives second derivatives.
+        // Step of the central difference for the second derivative.
         let apart = self.distance / STEPS as f64;
         let way = |i: usize| self.distance * phase(i as f64 / STEPS as f64)[0];
         let mut state = State { joints: DVector::from_column_slice(joints), base };

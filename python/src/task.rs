@@ -161,6 +161,10 @@ pub(crate) fn plan(
     let family = family_name.map(family).transpose()?;
     let choice = FamilyChoice { family, pieces, degree };
     let planner = Planner::read(&task.document, choice, settings).or_raise()?;
+    if planner.is_mission() {
+        let message = "this is a task of several motions, which the command's `plan` takes";
+        return Err(errors::usage(message));
+    }
     if let Some(residual) = planner.task().already_there() {
         return Err(errors::already_there(format!(
             "there is nothing to plan: all joints stand at their goals, and the base is {:.6}° from its goal",

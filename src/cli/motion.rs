@@ -13,7 +13,7 @@ use crate::output::create_folder;
 use crate::output::{check_folder_writable, check_writable};
 use crate::reorientation::{
     AnyReorientation, Assessment, Closest, Excursions, ExportError, Motion, MotionFormat, Record,
-    Sampling, TooManySamples, Used, intervals, write_motion,
+    Sampling, TooManySamples, ToolEnd, Used, intervals, write_motion,
 };
 use crate::robot::{JointKind, MovingJoint, Robot, ShapeSource};
 use crate::task::{Task, ToolGoal};
@@ -159,7 +159,8 @@ pub(super) fn residual(residual: f64, error: Option<f64>) -> String {
 }
 
 /// Where the tool ends, and where that leaves the joints.
-fn tool_told(task: &Task, goal: &ToolGoal, Miss { position, angle }: &Miss) -> String {
+fn tool_told(task: &Task, goal: &ToolGoal, end: &ToolEnd) -> String {
+    let Miss { position, angle } = end.miss;
     let mut misses = Vec::new();
     if goal.target.position.is_some() {
         misses.push(format!("{position:.1e} m"));
@@ -167,7 +168,7 @@ fn tool_told(task: &Task, goal: &ToolGoal, Miss { position, angle }: &Miss) -> S
     if goal.target.orientation != Orientation::Any {
         misses.push(format!("{:.1e}°", angle.to_degrees()));
     }
-    let joints = task.robot.joints().zip(&task.goal.joints);
+    let joints = task.robot.joints().zip(&end.joints);
     let at = |(joint, at): (MovingJoint<'_>, &f64)| {
         let value = joint.kind.to_file_units(*at);
         match joint.kind {
@@ -250,8 +251,8 @@ impl fmt::Display for Told<'_> {
             }
         }
         let mut lines = Vec::new();
-        if let (Some(goal), Some(miss)) = (&task.tool, &excursions.tool_miss) {
-            lines.push(tool_told(task, goal, miss));
+        if let (Some(goal), Some(end)) = (&task.tool, &excursions.tool) {
+            lines.push(tool_told(task, goal, end));
         }
         if let Some(Closest { between: [one, other], distance, at, shapes }) = &excursions.closest {
             let state = if *distance < 0.0 { "overlap by" } else { "come as near as" };

@@ -103,14 +103,18 @@ impl Plan {
         }
         for leg in &found.legs {
             let LegMotion::Planned(planned) = &leg.motion else { continue };
-            for remark in planned.remark(self.budget).into_iter().chain(planned.overlap()) {
+            if let Some(failure) = &planned.failure {
+                note!("{}: warning: the search failed: {failure}", leg.name);
+            }
+            let budget = self.budget / planner.stops() as u64;
+            for remark in planned.remark(budget).into_iter().chain(planned.overlap()) {
                 note!("{}: {remark}", leg.name);
             }
         }
         let record = |sampling| found.record(sampling);
         let sample = |intervals| found.sample(|_| intervals);
         self.files.write_samples(planner.task(), record, sample)?;
-        if found.is_interrupted() {
+        if found.interrupted {
             return Err(CliError::Interrupted("these are the motions so far".to_owned()));
         }
         if self.require && !found.is_reached() {
@@ -206,7 +210,9 @@ impl Plan {
                 self.optimiser, self.seed, self.budget
             );
             let (coefficients, assessment) = (&found.coefficients, &found.assessment);
-            let entry = BestKnown::new(problem, task.clone(), coefficients, assessment, found_by);
+            // A goal of the tool has several configurations, and the motion ends in one of them.
+            let task = task.ending_with(problem.task());
+            let entry = BestKnown::new(problem, task, coefficients, assessment, found_by);
             note!("the entry for results/best-known.toml:\n\n{entry}");
         }
     }

@@ -29,7 +29,7 @@ pub(super) struct Descent<'a> {
     robot: &'a Robot,
     target: &'a ToolTarget,
     near: &'a [f64],
-    /// What a unit of each joint's way counts, the most being one.
+    /// Weight of each joint's travel, scaled so that the largest is 1.
     efforts: Vec<f64>,
     ranges: Vec<[f64; 2]>,
     leading: Vec<usize>,
@@ -62,7 +62,7 @@ impl<'a> Descent<'a> {
         ways.map(|((at, near), effort)| (at - near).abs() * effort).fold(0.0, f64::max)
     }
 
-    /// The solution of the same branch that is nearest to where it is to be near to.
+    /// Moves a solution towards where it is to be near to; it usually stays on its branch.
     pub(super) fn nearest(&self, mut solution: Vec<f64>) -> Vec<f64> {
         // Whole turns lead nowhere else.
         for (joint, (own, at)) in self.robot.joints().zip(&mut solution).enumerate() {

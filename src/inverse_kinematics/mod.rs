@@ -17,7 +17,7 @@ use crate::robot::Robot;
 const STARTS: usize = 96;
 const MORE_STARTS: usize = 160;
 
-/// Solutions of which no joint differs by more \[rad or m\] are one.
+/// Two solutions are the same if no joint differs by more than this \[rad or m\].
 const SAME: f64 = 1e-3;
 
 /// All joint positions \[rad or m\] that were found within the joints' ranges, nearest first; `near`, one position per joint, is what

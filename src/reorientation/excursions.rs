@@ -31,8 +31,17 @@ pub struct Excursions {
     pub positions: Vec<[f64; 2]>,
     /// How much of each limit on the way is used.
     pub used: Vec<Used>,
-    /// By how much the tool misses its goal at the end, where the task states one.
-    pub tool_miss: Option<Miss>,
+    /// How the tool comes to its goal, where the task states one.
+    pub tool: Option<ToolEnd>,
+}
+
+/// How the tool comes to its goal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToolEnd {
+    /// By how much it misses its goal.
+    pub miss: Miss,
+    /// Where the joints are then \[rad or m\].
+    pub joints: Vec<f64>,
 }
 
 /// Two bodies, or a body and what it is kept out of, where they are closest.
@@ -157,7 +166,7 @@ impl Excursions {
             }),
             positions: positions.collect(),
             used: Vec::new(),
-            tool_miss: tool_miss(task, motion),
+            tool: tool_end(task, motion),
         };
         found.used = found.shares(task, of);
         found
@@ -218,11 +227,12 @@ impl Excursions {
     }
 }
 
-fn tool_miss(task: &Task, motion: &Motion) -> Option<Miss> {
+fn tool_end(task: &Task, motion: &Motion) -> Option<ToolEnd> {
     let (goal, base) = (task.tool.as_ref()?, motion.base.last()?);
     let ends = motion.joints.iter().map(|joint| joint.derivatives.last().map(|at| at[0]));
     let joints: Vec<f64> = ends.collect::<Option<_>>()?;
-    Some(goal.miss(&task.robot, &task.goal.base, &joints, base))
+    let miss = goal.miss(&task.robot, &task.goal.base, &joints, base);
+    Some(ToolEnd { miss, joints })
 }
 
 /// Bodies that overlap by this share of the reach touch, as far as limits are kept.

@@ -89,8 +89,8 @@ impl<F: Family> Reorientation<F> {
         Self { task, family, accuracy, tables, fine, width: Width::widest(), variants }
     }
 
-    /// The same problem, evaluated more or less finely. Tables for [`Accuracy::FINE`] are made once for all
-    /// clones.
+    /// The same problem, evaluated more or less finely; what sampled robots add to the cost stays as it is. Tables for
+    /// [`Accuracy::FINE`] are made once for all clones.
     #[must_use]
     pub fn with_accuracy(&self, accuracy: Accuracy) -> Self {
         let make = || Tables::new(&self.task, self.family(), accuracy);

@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::any::AnyReorientation;
-use super::excursions::{Excursions, Used};
+use super::excursions::{Excursions, ToolEnd, Used};
 use super::fitness::Assessment;
-use crate::inverse_kinematics::Miss;
 use crate::robot::{Robot, ShapeSource};
 use crate::task::{Task, ToolGoal};
 use crate::trajectory::Peaks;
@@ -114,17 +113,20 @@ struct ToolJson {
     angle_error_deg: f64,
     /// The joints' positions at the goal, in degrees or metres.
     joints: Vec<f64>,
+    /// Which of the configurations that were found that is, the nearest to the start being 1; null if it is another one.
+    branch: Option<usize>,
     /// How many configurations were found that bring the tool there.
     branches: usize,
 }
 
 impl ToolJson {
-    fn new(goal: &ToolGoal, miss: &Miss, task: &Task) -> Self {
-        let joints = task.robot.joints().zip(&task.goal.joints);
+    fn new(goal: &ToolGoal, end: &ToolEnd, task: &Task) -> Self {
+        let joints = task.robot.joints().zip(&end.joints);
         Self {
-            position_error_m: miss.position,
-            angle_error_deg: miss.angle.to_degrees(),
+            position_error_m: end.miss.position,
+            angle_error_deg: end.miss.angle.to_degrees(),
             joints: joints.map(|(joint, at)| joint.kind.to_file_units(*at)).collect(),
+            branch: goal.branch_at(&end.joints),
             branches: goal.branches.len(),
         }
     }
@@ -158,7 +160,7 @@ impl WayJson {
             (limit, Some(shares.fold(0.0, f64::max)))
         });
         let of_joints = of_joints.into_iter().chain([("range", Some(ranges))]);
-        let tool = task.tool.as_ref().zip(excursions.tool_miss.as_ref());
+        let tool = task.tool.as_ref().zip(excursions.tool.as_ref());
         let used = |used: &Used| (used.limit.name(), used.share.is_finite().then_some(used.share));
         Self {
             largest_tool_speed_m_s: excursions.tool_speed,
@@ -169,7 +171,7 @@ impl WayJson {
             shapes: closest.map(|closest| closest.shapes),
             limits_used: of_joints.chain(excursions.used.iter().map(used)).collect(),
             not_checked: NOT_CHECKED,
-            tool: tool.map(|(goal, miss)| ToolJson::new(goal, miss, task)),
+            tool: tool.map(|(goal, end)| ToolJson::new(goal, end, task)),
         }
     }
 }

@@ -51,7 +51,7 @@ pub use accuracy::Accuracy;
 pub use any::{AnyReorientation, SearchedFamily};
 pub use best_known::{BestKnown, fingerprint};
 pub use boxes::Boxes;
-pub use excursions::{Closest, Excursions, PathLimit, Used};
+pub use excursions::{Closest, Excursions, PathLimit, ToolEnd, Used};
 #[cfg(feature = "harness")]
 pub use exhibits::{FoundBy, motion_scene};
 #[cfg(all(feature = "cli", feature = "harness"))]

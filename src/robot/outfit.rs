@@ -102,7 +102,9 @@ impl<'a> Outfit<'a> {
             body,
             centre_of_mass: Vector3::from(*centre_of_mass),
         });
-        self.rebuilt(robot, links, payload.span())
+        self.rebuilt(robot, links, payload.span())?
+            .following(robot.follows().to_vec())
+            .map_err(|error| self.document.error_at(payload.span(), error.to_string(), None))
     }
 
     fn rebuilt(

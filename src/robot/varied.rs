@@ -29,7 +29,9 @@ impl Robot {
             Body { mass: own, inertia: moments, shapes: body.shapes.clone() }
         };
         let mut offset_of = vec![0.0; self.links().len()];
-        self.joints().zip(offsets).for_each(|(joint, offset)| offset_of[joint.link] = *offset);
+        let mut offsets = offsets.to_vec();
+        self.drive_followers(&mut offsets);
+        self.joints().zip(&offsets).for_each(|(joint, offset)| offset_of[joint.link] = *offset);
         let links = self.links().iter().enumerate().map(|(i, link)| {
             let mut link = link.clone();
             if offset_of[i] != 0.0 {

@@ -16,7 +16,7 @@ use super::tables::{
 };
 use super::uncertainty::{Robust, RobustTable, UncertaintyTable};
 use super::way::Way;
-use super::{PoseTable, Posture, Task, ToolGoal};
+use super::{PoseTable, Posture, PostureParts, Task, ToolGoal};
 use crate::input::{Document, Fraction, InputError, NonNegative, Positive, nearest};
 use crate::robot::{BaseTable, Follows, Locked, Outfit, PayloadTable, Robot, RobotFile};
 use crate::trajectory::Limits;
@@ -42,7 +42,7 @@ pub struct TaskTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     base: Option<Spanned<BaseTable>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    payload: Option<Spanned<PayloadTable>>,
+    pub(super) payload: Option<Spanned<PayloadTable>>,
     pub(super) start: PostureTable,
     pub(super) goal: PostureTable,
     limits: LimitsTable,
@@ -54,9 +54,9 @@ pub struct TaskTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) cycles: Option<Spanned<Cycles>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    uncertainty: Option<UncertaintyTable>,
+    pub(super) uncertainty: Option<UncertaintyTable>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    robust: Option<Spanned<RobustTable>>,
+    pub(super) robust: Option<Spanned<RobustTable>>,
     /// Limits on rate, acceleration and jerk that a sweep states.
     #[serde(skip)]
     swept: [bool; 3],
@@ -144,6 +144,18 @@ impl TaskTable {
             goal: self.goal.with(&pose.goal),
             ..self.clone()
         }
+    }
+
+    /// The same with the joints' positions at the goal of a task, where this states where the tool is to be.
+    #[must_use]
+    pub fn ending_with(&self, task: &Task) -> Self {
+        if self.goal.tool.is_none() {
+            return self.clone();
+        }
+        let joints = task.robot.joints().zip(&task.goal.joints);
+        let positions = joints.map(|(joint, at)| joint.kind.to_file_units(*at)).collect();
+        let goal = PostureParts::of_joints(&task.robot, positions);
+        self.with_pose(&PoseTable { goal, ..PoseTable::default() })
     }
 
     /// The same with the goal's tolerance, rates that are the robot's own and what limits on the way imply written out.
@@ -329,7 +341,7 @@ impl TaskTable {
             robust: None,
             robot: Arc::new(robot),
         };
-        task.robust = self.robust(&task, document)?;
+        task.robust = robust(self.robust.as_ref(), &task, document)?;
         let solids = self.keep_out.solids(task.start.base_position(&task.robot));
         let least = self.limits.clearance_m.as_ref().map(|clearance| clearance.get_ref().0);
         // What is to be kept out of is not to be touched.
@@ -343,20 +355,6 @@ impl TaskTable {
                 Err(document.error_at(self.limits.span_of(key), reason, None))
             }
         }
-    }
-
-    /// The wish for robots as they may be.
-    fn robust(&self, task: &Task, document: &Document) -> Result<Option<Robust>, InputError> {
-        let Some(table) = &self.robust else { return Ok(None) };
-        let failed = |message: String| document.error_at(table.span(), message, None);
-        let uncertainty = task.uncertainty.as_ref().ok_or_else(|| {
-            failed(
-                "found `robust` without `[task.uncertainty]`, which says what is not known".into(),
-            )
-        })?;
-        let robust = table.get_ref().build(uncertainty, task.base_weight);
-        robust.uncertainty.draw(task).map_err(|error| failed(error.to_string()))?;
-        Ok(Some(robust))
     }
 
     /// The goal, and what it is in terms of the tool if the table states that.
@@ -375,6 +373,10 @@ impl TaskTable {
             return Err(reader.document.error_at(span, message, None));
         }
         let base = self.goal.base();
+        if self.via.iter().any(ViaTable::changes_load) {
+            // Where the tool can be then depends on what it carries.
+            return Ok((Posture { joints: start.joints.clone(), base }, None));
+        }
         let origin = start.base_position(reader.robot);
         let tool = table.get_ref();
         let tool = tool.build(reader.robot, origin, &base, &start.joints, &efforts(limits));
@@ -409,6 +411,22 @@ impl TaskTable {
         Ok((task, None))
     }
 }
+/// The wish for sampled robots.
+pub(super) fn robust(
+    table: Option<&Spanned<RobustTable>>,
+    task: &Task,
+    document: &Document,
+) -> Result<Option<Robust>, InputError> {
+    let Some(table) = table else { return Ok(None) };
+    let failed = |message: String| document.error_at(table.span(), message, None);
+    let uncertainty = task.uncertainty.as_ref().ok_or_else(|| {
+        failed("found `robust` without `[task.uncertainty]`, which says what is not known".into())
+    })?;
+    let robust = table.get_ref().build(uncertainty, task.base_weight);
+    robust.uncertainty.draw(task).map_err(|error| failed(error.to_string()))?;
+    Ok(Some(robust))
+}
+
 /// What a unit of each joint's way counts: its least time \[s\].
 pub(super) fn efforts(limits: &[[f64; 3]]) -> Vec<f64> {
     limits.iter().map(|[rate, ..]| 1.0 / rate).collect()

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use nalgebra::{UnitQuaternion, Vector3};
 use toml::Spanned;
 
-use super::file::{TaskTable, efforts};
+use super::file::{TaskTable, efforts, robust};
 use super::keep_out::KeepOut;
 use super::reader::Reader;
 use super::tool_goal::ToolTable;
+use super::uncertainty::{RobustTable, UncertaintyTable};
 use super::{ClearanceLimit, Posture, Task};
 use crate::input::{Document, InputError};
 use crate::robot::{Outfit, PayloadTable, Robot};
@@ -22,6 +23,8 @@ pub struct Mission {
     /// From its start to its goal, whatever lies between.
     pub ends: Task,
     keep_out: KeepOut,
+    uncertainty: Option<UncertaintyTable>,
+    robust: Option<Spanned<RobustTable>>,
     /// How the tool leaves the start.
     retreat: Option<(Straight, Range<usize>)>,
     stops: Vec<Stop>,
@@ -182,13 +185,27 @@ impl TaskTable {
             let (direction, distance) = (-Vector3::z(), retreat.get_ref().0);
             (Straight { direction, distance, keeps_orientation }, retreat.span())
         });
-        let (document, keep_out) = (document.clone(), self.keep_out.clone());
-        let mission = Mission { document, ends, keep_out, retreat, stops };
+        let mission = Mission {
+            document: document.clone(),
+            ends,
+            keep_out: self.keep_out.clone(),
+            uncertainty: self.uncertainty.clone(),
+            robust: self.robust.clone(),
+            retreat,
+            stops,
+        };
+        mission.check_load(self.payload.is_some())?;
         // What cannot be reached is told before anything is planned.
         let mut at = mission.start();
+        if let Some(path) = mission.leaving_start()? {
+            at = at.moved(end_of(&path));
+        }
         for stop in 0..mission.stops.len() {
             let legs = mission.legs(stop, &at)?;
             at = mission.loaded(stop, &at.moved(legs[0].end()))?;
+            if let Some(path) = mission.leaving(stop, &at)? {
+                at = at.moved(end_of(&path));
+            }
         }
         Ok(mission)
     }
@@ -204,7 +221,34 @@ impl Leg {
     }
 }
 
+/// Where the robot is at the end of a line.
+pub(crate) fn end_of(path: &StraightPath) -> Posture {
+    let [_, joints] = path.ends();
+    Posture { joints: joints.to_vec(), base: path.base[1] }
+}
+
 impl Mission {
+    /// Finds fault with a tool that is to catch something while it carries something, or to let go of nothing.
+    fn check_load(&self, mut carries: bool) -> Result<(), InputError> {
+        for Stop { name, load, .. } in &self.stops {
+            match load {
+                Load::Same => {}
+                Load::Capture(capture) if carries => {
+                    let message = format!("{name}: the tool carries something already");
+                    let help = Some("`release = true` on a stop before lets go of it".to_owned());
+                    return Err(self.document.error_at(capture.span(), message, help));
+                }
+                Load::Release if !carries => {
+                    let message = format!("{name}: found `release`, and the tool carries nothing");
+                    return Err(self.document.error_at(0..0, message, None));
+                }
+                Load::Capture(_) => carries = true,
+                Load::Release => carries = false,
+            }
+        }
+        Ok(())
+    }
+
     /// How many stops there are.
     pub fn stops(&self) -> usize {
         self.stops.len()
@@ -236,6 +280,7 @@ impl Mission {
     pub fn loaded(&self, stop: usize, at: &Standing) -> Result<Standing, InputError> {
         let robot = match &self.stops[stop].load {
             Load::Same => return Ok(at.clone()),
+            // What a task itself makes the tool carry was caught before the start.
             Load::Release => self.ends.robot.clone(),
             Load::Capture(payload) => {
                 let none = Outfit::none(&self.document);
@@ -247,20 +292,26 @@ impl Mission {
     }
 
     /// A task of the robot as it is there, from there to the same posture.
-    pub fn task_at(&self, at: &Standing) -> Task {
+    pub fn task_at(&self, at: &Standing) -> Result<Task, InputError> {
         let mut path = self.ends.path.clone();
         if let Some(limit) = &path.clearance {
             let solids = self.keep_out.solids(at.origin());
             path.clearance = Some(ClearanceLimit::new(&at.robot, solids, limit.least));
         }
-        Task {
+        let reader = Reader { document: &self.document, robot: &at.robot };
+        let uncertainty = self.uncertainty.as_ref().map(|table| reader.uncertainty(table));
+        let mut task = Task {
             robot: at.robot.clone(),
             start: at.posture.clone(),
             goal: at.posture.clone(),
             tool: None,
             path,
+            uncertainty: uncertainty.transpose()?,
+            robust: None,
             ..self.ends.clone()
-        }
+        };
+        task.robust = robust(self.robust.as_ref(), &task, &self.document)?;
+        Ok(task)
     }
 
     /// How it leaves a stop.
@@ -297,7 +348,7 @@ impl Mission {
         let failed = |message: String| {
             self.document.error_at(span.clone(), format!("{name}: {message}"), None)
         };
-        let here = self.task_at(from);
+        let here = self.task_at(from)?;
         let to = |joints: &[f64], base: UnitQuaternion<f64>| Task {
             goal: Posture { joints: joints.to_vec(), base },
             ..here.clone()
@@ -355,8 +406,7 @@ impl Leg {
     /// One whose end is approached straight: the motion before ends where the way back from there leads.
     fn approached(task: Task, straight: &Straight) -> Result<Self, StraightError> {
         let back = straight.path(&task.robot, &task.goal.joints, task.goal.base)?;
-        let [_, joints] = back.ends();
-        let before = Posture { joints: joints.to_vec(), base: back.base[1] };
+        let before = end_of(&back);
         let approach = Task { start: before.clone(), ..task.clone() };
         let task = Task { goal: before, tool: None, ..task };
         Ok(Self { task, approach: Some((back.reversed(), approach)) })

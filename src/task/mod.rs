@@ -25,6 +25,7 @@ use crate::robot::Robot;
 use crate::trajectory::{Limits, SinePolynomial, Spline};
 pub use file::TaskTable;
 pub use frame::Frame;
+pub(crate) use mission::end_of;
 pub use mission::{Leg, Mission, Standing};
 pub use path_limits::{ClearanceLimit, Cone, Impossible, PathLimits, TurnFrom, bodies_of};
 pub use pose::{PoseTable, PostureParts};

@@ -58,6 +58,11 @@ pub(super) struct ViaTable {
 }
 
 impl ViaTable {
+    /// Whether the tool catches something or lets go of it.
+    pub(super) fn changes_load(&self) -> bool {
+        self.capture.is_some() || self.release
+    }
+
     /// The posture.
     pub(super) fn parts(&self) -> PostureParts {
         let Self { joints_deg, joints, tool, base_zyx_deg, .. } = self.clone();
@@ -66,6 +71,11 @@ impl ViaTable {
 }
 
 impl PostureParts {
+    /// Positions of a robot's joints \[° or m\] alone.
+    pub(super) fn of_joints(robot: &Robot, positions: Vec<f64>) -> Self {
+        Self { base_zyx_deg: None, ..Self::new(robot, positions, [0.0; 3]) }
+    }
+
     /// Both parts: positions of a robot's joints \[° or m\], all or those that follow none, and the base's yaw, pitch and roll \[°\].
     pub fn new(robot: &Robot, positions: Vec<f64>, base_zyx_deg: [f64; 3]) -> Self {
         let positions = Positions::Each(positions.into_iter().map(Finite).collect());

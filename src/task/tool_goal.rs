@@ -77,11 +77,11 @@ impl ToolTable {
             (Some(_), Some(_), _) => {
                 return Err("found both `zyx_deg` and `axis`, expected one of them".to_owned());
             }
-            (_, None, Some(_)) => {
+            (None, None, Some(_)) if self.approach_m.is_none() && self.retreat_m.is_none() => {
                 return Err("found `tool_axis` without `axis`, where it is to point".to_owned());
             }
-            (None, None, None) => Orientation::Any,
-            (Some(zyx), None, None) => {
+            (None, None, _) => Orientation::Any,
+            (Some(zyx), None, _) => {
                 let [yaw, pitch, roll] = zyx.map(|angle| angle.0.to_radians());
                 let turned = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
                 Orientation::Full((into_base * turned).to_rotation_matrix())
@@ -133,7 +133,17 @@ impl ToolTable {
     }
 }
 
+/// Positions that differ by no more \[rad or m\] are the same configuration.
+const SAME: f64 = 1e-3;
+
 impl ToolGoal {
+    /// Which of the branches joints \[rad or m\] are at, counted from one.
+    pub(crate) fn branch_at(&self, joints: &[f64]) -> Option<usize> {
+        let is_there =
+            |branch: &Vec<f64>| branch.iter().zip(joints).all(|(own, at)| (own - at).abs() < SAME);
+        self.branches.iter().position(is_there).map(|place| place + 1)
+    }
+
     /// By how much the tool misses its goal where joints \[rad or m\] and base end so.
     pub(crate) fn miss(
         &self,

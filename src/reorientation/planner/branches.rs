@@ -13,6 +13,9 @@ use crate::task::Task;
 /// Branches that are looked at, the nearest ones.
 const BRANCHES: usize = 8;
 
+/// Evaluations that a look at one of them takes at least.
+const LEAST_LOOK: u64 = 200;
+
 /// Starts that are followed for the first look at each, over the paper's family.
 const STARTS: usize = 4;
 
@@ -26,7 +29,9 @@ impl Planner {
         tasks: Vec<Task>,
         search: Search<'_>,
     ) -> Result<(usize, Planned), PlanError> {
-        let planners = tasks.into_iter().take(BRANCHES).map(|task| self.on(task));
+        // Looks may spend half of the budget.
+        let affordable = (search.budget / (2 * LEAST_LOOK)).max(1) as usize;
+        let planners = tasks.into_iter().take(BRANCHES.min(affordable)).map(|task| self.on(task));
         let planners: Vec<Self> = planners.collect::<Result<_, _>>()?;
         if let [only] = &planners[..] {
             return Ok((0, only.search(search)?));
@@ -47,22 +52,35 @@ impl Planner {
             a_misses.cmp(&b_misses).then(a.total_cmp(&b))
         });
         let mut best: Option<(usize, Planned)> = None;
+        let mut interrupted = looks.iter().flatten().any(|look| look.interrupted);
         for branch in order.into_iter().take(TRIES) {
             let left = search.budget.saturating_sub(spent.evaluations);
-            let is_over = |found: &Planned| found.interrupted || found.reach == Reach::Reached;
-            if left == 0 || best.as_ref().is_some_and(|(_, found)| is_over(found)) {
+            let is_over = |found: &Planned| found.reach == Reach::Reached;
+            if left == 0 || interrupted || best.as_ref().is_some_and(|(_, found)| is_over(found)) {
                 break;
             }
-            let found = planners[branch].search(Search { budget: left, ..search })?;
+            let found = match planners[branch].search(Search { budget: left, ..search }) {
+                Err(PlanError::Interrupted) => {
+                    interrupted = true;
+                    break;
+                }
+                found => found?,
+            };
             spent = spent.and(found.spent);
+            interrupted |= found.interrupted;
             let is_better = best.as_ref().is_none_or(|(_, best)| found.is_better_than(best));
             if is_better {
                 best = Some((branch, found));
             }
         }
-        let (branch, best) = best.ok_or(PlanError::NoMotion)?;
+        // Where there was no time for more, the best of the looks is what there is.
+        let first = |look: (usize, Option<Planned>)| Some((look.0, look.1?));
+        let looked = looks.into_iter().enumerate().filter_map(first);
+        let looked = looked.min_by(|a, b| a.1.assessment.cost.total_cmp(&b.1.assessment.cost));
+        let none = if interrupted { PlanError::Interrupted } else { PlanError::NoMotion };
+        let (branch, best) = best.or(looked).ok_or(none)?;
         spent.seconds = started.elapsed().as_secs_f64();
-        Ok((branch, Planned { spent, ..best }))
+        Ok((branch, Planned { spent, interrupted, ..best }))
     }
 
     /// The same for another task.

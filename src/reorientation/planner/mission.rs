@@ -14,7 +14,7 @@ use crate::reorientation::replayed::Replayed;
 use crate::reorientation::sampling::{Sampling, TooManySamples};
 use crate::search::Watch;
 use crate::straight::StraightPath;
-use crate::task::{Posture, Standing, Task};
+use crate::task::{Posture, Standing, Task, end_of};
 use crate::trajectory::Points;
 
 /// What came of a task of several motions.
@@ -24,6 +24,10 @@ pub struct PlannedMission {
     pub ends: Task,
     /// The motions, one after the other.
     pub legs: Vec<PlannedLeg>,
+    /// Whether all stops were come to.
+    pub is_complete: bool,
+    /// Whether the user ended the search.
+    pub interrupted: bool,
 }
 
 /// One of several motions.
@@ -64,54 +68,57 @@ impl Planner {
         watch: &Watch,
     ) -> Result<PlannedMission, PlanError> {
         let mission = self.mission.as_ref().ok_or(PlanError::Several)?;
-        let ends = mission.ends.clone();
-        let budget = (budget / mission.stops() as u64).max(1);
+        let search = Search { seed, budget: (budget / mission.stops() as u64).max(1), watch };
         let mut at = mission.start();
-        let mut legs: Vec<PlannedLeg> = Vec::new();
-        let mut go = |name: String, motion: LegMotion, at: &mut Standing| {
-            *at = at.moved(motion.end());
-            legs.push(PlannedLeg { name, motion });
+        let mut found = PlannedMission {
+            ends: mission.ends.clone(),
+            legs: Vec::new(),
+            is_complete: false,
+            interrupted: false,
         };
         if let Some(path) = mission.leaving_start()? {
-            let task = straight_task(mission.task_at(&at), &path);
-            go("retreat from start".to_owned(), straight(task, &path), &mut at);
+            let task = straight_task(mission.task_at(&at)?, &path);
+            at = found.go("retreat from start".to_owned(), straight(task, &path), &at);
         }
         for stop in 0..mission.stops() {
             let name = mission.name(stop);
             let choices = mission.legs(stop, &at)?;
-            let search = Search { seed, budget, watch };
             let is_there = choices.iter().position(|leg| leg.task.already_there().is_some());
             let chosen = if let Some(leg) = is_there {
                 leg
             } else {
                 let tasks = choices.iter().map(|leg| leg.task.clone()).collect();
-                let (leg, found) = self.plan_one_of(tasks, search)?;
-                let is_over = found.interrupted || found.reach != Reach::Reached;
-                go(name.to_owned(), LegMotion::Planned(Box::new(found)), &mut at);
+                let (leg, planned) = match self.plan_one_of(tasks, search) {
+                    Err(PlanError::Interrupted) if !found.legs.is_empty() => {
+                        return Ok(PlannedMission { interrupted: true, ..found });
+                    }
+                    planned => planned?,
+                };
+                found.interrupted = planned.interrupted;
+                let is_over = planned.interrupted || planned.reach != Reach::Reached;
+                at = found.go(name.to_owned(), LegMotion::Planned(Box::new(planned)), &at);
                 if is_over {
-                    break;
+                    return Ok(found);
                 }
                 leg
             };
             if let Some((path, task)) = &choices[chosen].approach {
                 let task = Task { start: at.posture.clone(), ..task.clone() };
-                go(format!("approach of {name}"), straight(task, path), &mut at);
+                at = found.go(format!("approach of {name}"), straight(task, path), &at);
             }
             at = mission.loaded(stop, &at)?;
             if let Some(path) = mission.leaving(stop, &at)? {
-                let task = straight_task(mission.task_at(&at), &path);
-                go(format!("retreat from {name}"), straight(task, &path), &mut at);
+                let task = straight_task(mission.task_at(&at)?, &path);
+                at = found.go(format!("retreat from {name}"), straight(task, &path), &at);
             }
         }
-        Ok(PlannedMission { ends, legs })
+        Ok(PlannedMission { is_complete: true, ..found })
     }
 }
 
 /// From where the task is, along a line.
 fn straight_task(task: Task, path: &StraightPath) -> Task {
-    let [_, joints] = path.ends();
-    let goal = Posture { joints: joints.to_vec(), base: path.base[1] };
-    Task { goal, ..task }
+    Task { goal: end_of(path), ..task }
 }
 
 /// The straight motion in the shortest time within all limits.
@@ -196,17 +203,14 @@ impl PlannedMission {
 
     /// Whether all motions were planned, reach their goals and keep all limits and ranges.
     pub fn is_reached(&self) -> bool {
-        let last = self.legs.last().map(|leg| leg.motion.task().goal.joints.as_slice());
-        let ends = self.ends.tool.is_some() || last == Some(&self.ends.goal.joints);
-        ends && self.legs.iter().all(|leg| leg.motion.is_reached())
+        self.is_complete && self.legs.iter().all(|leg| leg.motion.is_reached())
     }
 
-    /// Whether the user ended the search.
-    pub fn is_interrupted(&self) -> bool {
-        self.legs.iter().any(|leg| match &leg.motion {
-            LegMotion::Planned(found) => found.interrupted,
-            LegMotion::Straight { .. } => false,
-        })
+    /// Goes on with a motion; gives where that ends.
+    fn go(&mut self, name: String, motion: LegMotion, from: &Standing) -> Standing {
+        let there = from.moved(motion.end());
+        self.legs.push(PlannedLeg { name, motion });
+        there
     }
 
     /// All motions as one; `intervals` tells in how many each is cut.
@@ -254,7 +258,7 @@ impl PlannedMission {
             within_limits: self.legs.iter().all(|leg| leg.motion.keeps_limits()),
             t_f: self.duration(),
             residual_deg: end.map(|end| end.angle_to(&self.ends.goal.base).to_degrees()),
-            interrupted: self.is_interrupted(),
+            interrupted: self.interrupted,
             legs,
             spent,
         }

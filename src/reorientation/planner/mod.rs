@@ -151,6 +151,11 @@ impl Planner {
         Ok(Self { document: document.clone(), file, problem, other, optimiser, mission })
     }
 
+    /// At how many places the robot comes to rest in a task of several motions.
+    pub fn stops(&self) -> usize {
+        self.mission.as_ref().map_or(1, |mission| mission.stops())
+    }
+
     /// Whether the task takes several motions.
     pub fn is_mission(&self) -> bool {
         self.mission.is_some()
@@ -359,8 +364,13 @@ impl Search<'_> {
         }
         let scp = Scp { first_weight: f64::INFINITY, tolerance: PASSED_OVER, ..scp.clone() };
         let onward = Onward { scp, start: &found.coefficients };
-        let more = Search { budget, ..self }.best(&onward, finer, problem, longest)?;
-        Ok(Planned { spent: found.spent.and(more.spent), ..more })
+        match (Search { budget, ..self }).best(&onward, finer, problem, longest) {
+            Err(PlanError::Interrupted) => Ok(Planned { interrupted: true, ..found }),
+            more => {
+                let more = more?;
+                Ok(Planned { spent: found.spent.and(more.spent), ..more })
+            }
+        }
     }
 
     /// The same among sine polynomials, whose box is a choice.

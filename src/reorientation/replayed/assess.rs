@@ -133,7 +133,7 @@ impl<'a> Replayed<'a> {
         let mut faults = faults(task, &path, played.residual, &played.peaks, &extents);
         let excursions = Excursions::of(task, &sample(task, points, &base, LOOKS.into()));
         faults.extend(on_the_way(&excursions.used));
-        faults.extend(of_tool(task, excursions.tool_miss.as_ref(), points.duration()));
+        faults.extend(of_tool(task, excursions.tool.as_ref(), points.duration()));
         Self {
             task,
             points,

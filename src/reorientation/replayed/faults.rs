@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 
 use serde::Serialize;
 
-use crate::inverse_kinematics::Miss;
-use crate::reorientation::excursions::{PathLimit, Used};
+use crate::reorientation::excursions::{PathLimit, ToolEnd, Used};
 use crate::robot::{Follow, JointKind};
 use crate::task::Task;
 use crate::trajectory::{Extent, Jump, Peaks, PointPath};
@@ -183,8 +182,8 @@ pub(super) fn on_the_way(used: &[Used]) -> impl Iterator<Item = Fault> + '_ {
 }
 
 /// What the tool misses its goal by, beyond what the base's tolerance leaves it.
-pub(super) fn of_tool(task: &Task, miss: Option<&Miss>, at: f64) -> Vec<Fault> {
-    let (Some(goal), Some(miss)) = (&task.tool, miss) else { return Vec::new() };
+pub(super) fn of_tool(task: &Task, end: Option<&ToolEnd>, at: f64) -> Vec<Fault> {
+    let (Some(goal), Some(ToolEnd { miss, .. })) = (&task.tool, end) else { return Vec::new() };
     let lever = goal.target.position.map_or(0.0, |position| position.norm());
     let tolerance = task.goal_tolerance;
     let fault =
