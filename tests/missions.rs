@@ -200,6 +200,40 @@ base_zyx_deg = [1, 0, 0]
     }
 }
 
+/// A load changes what is uncertain, and joints that follow others still do.
+#[test]
+fn loads_and_uncertainty_go_together() {
+    let text = r#"
+[task]
+robot = "ur5e"
+robust = { samples = 2 }
+follow = { wrist_3_joint = "wrist_2_joint" }
+[[task.via]]
+joints_deg = [10, -80, 80, -80, -60]
+capture = { mass = 10 }
+[task.start]
+joints_deg = [0, -90, 90, -90, -90]
+base_zyx_deg = [0, 0, 0]
+[task.goal]
+joints_deg = [20, -80, 80, -80, -60]
+base_zyx_deg = [0, 0, 0]
+[task.uncertainty]
+mass = 0.05
+samples = 3
+"#;
+    let found = planned(text);
+    assert_eq!(found.legs.len(), 2);
+    let masses =
+        |leg: usize| found.legs[leg].motion.task().uncertainty.as_ref().unwrap().masses.len();
+    assert_eq!(masses(1), masses(0) + 1);
+    for leg in &found.legs {
+        let LegMotion::Planned(planned) = &leg.motion else { panic!("{}", leg.name) };
+        let robustness = planned.robustness().unwrap();
+        assert!(robustness.residuals.iter().all(|residual| residual.is_finite()));
+        assert_eq!(leg.motion.task().robot.leading_count(), 5);
+    }
+}
+
 /// A turn of the base in three equal parts, the joints back at their start after each.
 #[test]
 fn a_turn_can_be_divided() {
@@ -239,6 +273,11 @@ fn mistakes_are_told() {
         "[[task.via]]\ncapture = { mass = 1 }\nrelease = true",
         "found both `capture` and `release`",
     );
+
+    expect("[[task.via]]\nrelease = true", "via 1: found `release`, and the tool carries nothing");
+    let twice = "[[task.via]]\ncapture = { mass = 1 }\n[[task.via]]\ncapture = { mass = 1 }";
+    expect(twice, "via 2: the tool carries something already");
+    expect("[task.start]\nretreat_m = 9\n[[task.via]]\nbase_zyx_deg = [1, 2, 3]", "`retreat_m`: ");
 
     let document =
         Document::embedded("mission.toml", "[task]\n[[task.via]]\nbase_zyx_deg = [1, 2, 3]");
