@@ -274,7 +274,10 @@ fn mistakes_are_told() {
         "found both `capture` and `release`",
     );
 
-    expect("[[task.via]]\nrelease = true", "via 1: found `release`, and the tool carries nothing");
+    expect(
+        "[[task.via]]\nrelease = true",
+        "via 1: found `release`, and the tool has caught nothing",
+    );
     let twice = "[[task.via]]\ncapture = { mass = 1 }\n[[task.via]]\ncapture = { mass = 1 }";
     expect(twice, "via 2: the tool carries something already");
     expect("[task.start]\nretreat_m = 9\n[[task.via]]\nbase_zyx_deg = [1, 2, 3]", "`retreat_m`: ");

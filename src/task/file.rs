@@ -422,6 +422,11 @@ pub(super) fn robust(
     let uncertainty = task.uncertainty.as_ref().ok_or_else(|| {
         failed("found `robust` without `[task.uncertainty]`, which says what is not known".into())
     })?;
+    if uncertainty.unknowns(&task.robot).is_empty() {
+        return Err(failed(
+            "found `robust`, and `[task.uncertainty]` leaves nothing uncertain".into(),
+        ));
+    }
     let robust = table.get_ref().build(uncertainty, task.base_weight);
     robust.uncertainty.draw(task).map_err(|error| failed(error.to_string()))?;
     Ok(Some(robust))

@@ -118,8 +118,7 @@ impl TaskTable {
         let Some((key, span)) = self.several() else { return Ok(()) };
         let message =
             format!("found `{key}`: a task of several motions is for `plan` and `replay`");
-        let help = "`[[sweep.pose]]` races each of several motions".to_owned();
-        Err(document.error_at(span, message, Some(help)))
+        Err(document.error_at(span, message, None))
     }
 
     /// The task, of as many motions as it takes.
@@ -229,17 +228,18 @@ pub(crate) fn end_of(path: &StraightPath) -> Posture {
 
 impl Mission {
     /// Finds fault with a tool that is to catch something while it carries something, or to let go of nothing.
-    fn check_load(&self, mut carries: bool) -> Result<(), InputError> {
+    fn check_load(&self, has_payload: bool) -> Result<(), InputError> {
+        let mut carries = false;
         for Stop { name, load, .. } in &self.stops {
             match load {
                 Load::Same => {}
-                Load::Capture(capture) if carries => {
+                Load::Capture(capture) if carries || has_payload => {
                     let message = format!("{name}: the tool carries something already");
-                    let help = Some("`release = true` on a stop before lets go of it".to_owned());
-                    return Err(self.document.error_at(capture.span(), message, help));
+                    return Err(self.document.error_at(capture.span(), message, None));
                 }
                 Load::Release if !carries => {
-                    let message = format!("{name}: found `release`, and the tool carries nothing");
+                    let message =
+                        format!("{name}: found `release`, and the tool has caught nothing");
                     return Err(self.document.error_at(0..0, message, None));
                 }
                 Load::Capture(_) => carries = true,
@@ -280,7 +280,6 @@ impl Mission {
     pub fn loaded(&self, stop: usize, at: &Standing) -> Result<Standing, InputError> {
         let robot = match &self.stops[stop].load {
             Load::Same => return Ok(at.clone()),
-            // What a task itself makes the tool carry was caught before the start.
             Load::Release => self.ends.robot.clone(),
             Load::Capture(payload) => {
                 let none = Outfit::none(&self.document);
