@@ -204,6 +204,8 @@ fn mistakes_are_told() {
         let found = task(&format!("[task]\nrobot = \"ur5e\"\n{text}")).unwrap_err();
         assert!(found.contains(expected), "{found}\nexpected: {expected}");
     };
+    let nothing = "robust = { samples = 4 }\n[task.uncertainty]\nsamples = 9";
+    expect(nothing, "`[task.uncertainty]` leaves nothing uncertain");
     expect("robust = { samples = 4 }", "found `robust` without `[task.uncertainty]`");
     expect(
         "robust = { samples = 0 }\n[task.uncertainty]\nmass = 0.1",

@@ -24,7 +24,7 @@ pub(super) fn told(found: &Planned) -> String {
     let told = Told { task, assessment: &found.assessment, excursions };
     let _ = writeln!(text, "{told}");
     let _ = writeln!(text, "  verdict        {}", found.verdict());
-    if let Some(robustness) = found.robustness() {
+    if let Some(robustness) = found.robustness().filter(|own| !own.sensitivities.is_empty()) {
         let _ = writeln!(text, "{}", robustness_told(&robustness, task));
     }
     let _ = writeln!(text, "  not checked    {}", NOT_CHECKED.join(", "));

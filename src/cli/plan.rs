@@ -90,6 +90,13 @@ impl Plan {
             let _bar = Bar::new(self.budget, watch.clone());
             planner.plan_mission(self.seed, self.budget, &watch)?
         };
+        if found.is_complete && found.legs.is_empty() {
+            let Task { start, goal, .. } = &**planner.task();
+            return self.tell_already_there(planner.task(), start.base.angle_to(&goal.base));
+        }
+        if self.entry {
+            note!("note: a task of several motions has no entry");
+        }
         let task = &planner.file().task;
         if self.json {
             let json = found.json(&self.asked(task));
@@ -118,7 +125,7 @@ impl Plan {
             return Err(CliError::Interrupted("these are the motions so far".to_owned()));
         }
         if self.require && !found.is_reached() {
-            let message = "not all motions reach their goals within all limits and ranges";
+            let message = "does not reach all stops within all limits and ranges";
             return Err(CliError::Required(message.to_owned()));
         }
         Ok(())
