@@ -187,7 +187,7 @@ def test_samples() -> None:
 
 def test_formats_that_there_are_not(tmp_path: Path) -> None:
     motion = driftless.plan(optimiser="nelder-mead", budget=100, progress=False)
-    with pytest.raises(ValueError, match=r"expected a name in \.csv, \.parquet or \.yaml"):
+    with pytest.raises(ValueError, match=r"expected a name in \.csv, \.wide\.csv, \.parquet, .* or \.mujoco"):
         motion.save(tmp_path / "motion.xlsx")
     with pytest.raises(driftless.ResultsError, match="cannot"):
         motion.save(tmp_path / "none" / "motion.csv")
@@ -204,7 +204,7 @@ def test_motions_are_drawn(tmp_path: Path) -> None:
     assert "<iframe srcdoc=" in page and "motions" in page
     motion.save_page(tmp_path / "motion.html")
     assert "<canvas" in (tmp_path / "motion.html").read_text(encoding="utf-8")
-    assert motion.to_pandas().shape == (501 * 6, 10)
+    assert motion.to_pandas().shape == (501 * 6, 20)
 
 
 def test_there_is_nothing_to_plan() -> None:
