@@ -305,7 +305,7 @@ impl Draft {
     fn pose(&mut self, posed: &Task) {
         self.task.start = posed.start.clone();
         self.task.goal = posed.goal.clone();
-        self.task.tool = posed.tool.clone();
+        self.task.tool.clone_from(&posed.tool);
         let path = &mut self.task.path;
         if let (Some(own), Some(posed)) = (&path.clearance, &posed.path.clearance) {
             path.clearance = Some(posed.with_least(own.least));
