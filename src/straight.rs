@@ -122,15 +122,7 @@ impl Line<'_> {
     fn rates(&self, state: &State) -> Option<DVector<f64>> {
         let robot = self.robot;
         let all = generalised_jacobian(robot, state.joints.as_slice());
-        let leading: Vec<usize> = robot.leading().collect();
-        let mut jacobian = all.rows(0, self.rows).select_columns(&leading);
-        for (joint, follow) in robot.follows().iter().enumerate() {
-            let Some(follow) = follow else { continue };
-            if let Some(column) = leading.iter().position(|leader| *leader == follow.leader) {
-                let mut column = jacobian.column_mut(column);
-                column += all.rows(0, self.rows).column(joint) * follow.multiplier;
-            }
-        }
+        let jacobian = robot.by_leading(all.rows(0, self.rows).as_view());
         let mut twist = DVector::zeros(self.rows);
         twist.rows_mut(0, 3).copy_from(&(state.base.inverse() * self.direction));
         let rates = jacobian.clone().svd(true, true).solve(&twist, SINGULAR).ok()?;
@@ -138,7 +130,7 @@ impl Line<'_> {
             return None;
         }
         let mut listed = vec![0.0; robot.joint_count()];
-        leading.iter().zip(&rates).for_each(|(joint, rate)| listed[*joint] = *rate);
+        robot.leading().zip(&rates).for_each(|(joint, rate)| listed[joint] = *rate);
         robot.drive_followers(&mut listed);
         Some(DVector::from_vec(listed))
     }

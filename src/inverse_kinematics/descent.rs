@@ -125,15 +125,9 @@ impl<'a> Descent<'a> {
         let mut error = DVector::zeros(6 + extra);
         error.rows_mut(0, 6).copy_from(&tool);
         let mut jacobian = DMatrix::zeros(6 + extra, self.leading.len());
-        for (column, &leader) in self.leading.iter().enumerate() {
-            let mut rows = jacobian.view_mut((0, column), (6, 1));
-            rows += by_joint.column(leader);
-            for (joint, follow) in self.robot.follows().iter().enumerate() {
-                if let Some(follow) = follow.filter(|follow| follow.leader == leader) {
-                    rows += by_joint.column(joint) * follow.multiplier;
-                }
-            }
-            if pull > 0.0 {
+        jacobian.rows_mut(0, 6).copy_from(&self.robot.by_leading(by_joint.as_view()));
+        if pull > 0.0 {
+            for (column, &leader) in self.leading.iter().enumerate() {
                 let weight = pull * self.efforts[leader];
                 error[6 + column] = weight * (positions[leader] - self.near[leader]);
                 jacobian[(6 + column, column)] = weight;

@@ -6,16 +6,18 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng};
 use super::link::Joint;
 use super::tree::Robot;
 
+/// Uniform in `[0, 1)`, all 53 bits of the mantissa used.
+pub(crate) fn unit(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+}
+
 impl Robot {
     /// Random configurations within the joints' ranges \[rad or m\], the same ones every time. Joints that follow others are where
     /// these put them.
     pub(crate) fn random_configurations(&self) -> impl Iterator<Item = Vec<f64>> + '_ {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         std::iter::repeat_with(move || {
-            let position = |[lower, upper]: [f64; 2]| {
-                let share = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-                lower + (upper - lower) * share
-            };
+            let position = |[lower, upper]: [f64; 2]| lower + (upper - lower) * unit(&mut random);
             let mut positions: Vec<f64> =
                 self.joints().map(|joint| joint.range).map(position).collect();
             self.place_followers(&mut positions);

@@ -1,5 +1,7 @@
 //! Robots whose joints follow others.
 
+use nalgebra::{DMatrix, DMatrixView};
+
 use super::error::RobotError;
 use super::follow::Follow;
 use super::follow_table::is_factor;
@@ -76,6 +78,20 @@ impl Robot {
                 positions[joint] = follow.position(positions[follow.leader]);
             }
         }
+    }
+
+    /// Derivatives by the joints that follow none, a column each, from those by all joints: what follows moves with its leader.
+    pub(crate) fn by_leading(&self, by_joint: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        let leading: Vec<usize> = self.leading().collect();
+        let mut by_leading = by_joint.select_columns(&leading);
+        for (joint, follow) in self.follows.iter().enumerate() {
+            let Some(follow) = follow else { continue };
+            if let Some(place) = leading.iter().position(|leader| *leader == follow.leader) {
+                let mut column = by_leading.column_mut(place);
+                column += by_joint.column(joint) * follow.multiplier;
+            }
+        }
+        by_leading
     }
 
     /// The same with rates, or what else does not know the offset.

@@ -31,6 +31,7 @@ mod varied;
 mod xml;
 
 pub use base::BaseTable;
+pub(crate) use configurations::unit;
 pub use derived::ShapeSource;
 pub use error::RobotError;
 pub use file::RobotFile;

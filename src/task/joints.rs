@@ -25,6 +25,11 @@ pub(super) type Positions = JointValues<Finite>;
 /// A limit, which all joints may share.
 pub(super) type Limit = JointValues<Positive>;
 
+/// Where positions stand that may be stated under either key.
+pub(super) fn span_of(either: [&Option<Spanned<Positions>>; 2]) -> Option<Range<usize>> {
+    either.into_iter().flatten().map(Spanned::span).next()
+}
+
 /// A key, and what its numbers count.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Key {

@@ -6,7 +6,8 @@ use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::joints::Positions;
+use super::frame::attitude;
+use super::joints::{self, Positions};
 use super::tool_goal::ToolTable;
 use crate::input::Finite;
 use crate::robot::{PayloadTable, Robot};
@@ -90,13 +91,12 @@ impl PostureParts {
 
     /// The base's attitude, if it is stated.
     pub(super) fn base(&self) -> Option<UnitQuaternion<f64>> {
-        let [yaw, pitch, roll] = self.base_zyx_deg?.map(|angle| angle.0.to_radians());
-        Some(UnitQuaternion::from_euler_angles(roll, pitch, yaw))
+        self.base_zyx_deg.map(attitude)
     }
 
     /// Where the joints' positions stand, if they stand anywhere.
     pub(super) fn joints_span(&self) -> Option<Range<usize>> {
-        [&self.joints, &self.joints_deg].into_iter().flatten().map(Spanned::span).next()
+        joints::span_of([&self.joints, &self.joints_deg])
     }
 
     fn is_empty(&self) -> bool {

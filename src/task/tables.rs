@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::cones::Cones;
-use super::joints::{JointValues, Limit, Positions};
+use super::frame::attitude;
+use super::joints::{self, JointValues, Limit, Positions};
 use super::keep_out::KeepOut;
 use super::path_limits::TurnFrom;
 use super::pose::ViaTable;
@@ -200,13 +201,12 @@ impl PostureTable {
     /// The base's attitude.
     pub(super) fn base(&self) -> UnitQuaternion<f64> {
         let zyx = self.base_zyx_deg.as_ref().map_or([Finite(0.0); 3], |base| *base.get_ref());
-        let [yaw, pitch, roll] = zyx.map(|angle| angle.0.to_radians());
-        UnitQuaternion::from_euler_angles(roll, pitch, yaw)
+        attitude(zyx)
     }
 
     /// Where the joints' positions stand, if they stand anywhere.
     pub(super) fn joints_span(&self) -> Option<Range<usize>> {
-        [&self.joints, &self.joints_deg].into_iter().flatten().map(Spanned::span).next()
+        joints::span_of([&self.joints, &self.joints_deg])
     }
 
     pub(super) fn is_without_joints(&self) -> bool {

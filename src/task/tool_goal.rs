@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::frame::Frame;
+use super::frame::{Frame, attitude};
 use crate::input::{Finite, Positive, optional_count};
 use crate::inverse_kinematics::{self, Miss, Orientation, Origin, ToolTarget};
 use crate::robot::Robot;
@@ -82,9 +82,7 @@ impl ToolTable {
             }
             (None, None, _) => Orientation::Any,
             (Some(zyx), None, _) => {
-                let [yaw, pitch, roll] = zyx.map(|angle| angle.0.to_radians());
-                let turned = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
-                Orientation::Full((into_base * turned).to_rotation_matrix())
+                Orientation::Full((into_base * attitude(zyx)).to_rotation_matrix())
             }
             (None, Some(axis), tool) => Orientation::Axis {
                 tool: tool.map_or(Ok(Vector3::z_axis()), |tool| unit(tool, "tool_axis"))?,

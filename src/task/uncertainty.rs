@@ -5,14 +5,14 @@ use std::num::NonZeroUsize;
 
 use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng as _, SeedableRng};
+use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::Task;
 use super::joints::Limit;
 use crate::input::{Document, Fraction, InputError, NonNegative, count};
-use crate::robot::{Robot, RobotError};
+use crate::robot::{Robot, RobotError, unit};
 
 /// The `[task.uncertainty]` table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -211,7 +211,7 @@ impl Uncertainty {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let unknowns = self.unknowns(&task.robot);
         let draw = |_| {
-            let mut share = || (random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+            let mut share = || 2.0 * unit(&mut random) - 1.0;
             let shares: Vec<_> = unknowns.iter().map(|unknown| (*unknown, share())).collect();
             self.varied(task, &shares)
         };
