@@ -1,26 +1,30 @@
 //! The base's rotation along a joint path (eqs. 9 and 19), by Magnus composition.
 //!
 //! With zero momentum `ω_b dt = W(θ) dθ`: the base's final attitude depends on the shape of the path
-//! alone, so everything here is in normalised time. The rate is in base axes, hence every step
-//! multiplies from the right.
+//! alone, so everything here is in normalised time. With angular momentum it depends on the duration, too ([`Drift`]). The
+//! rate is in base axes, hence every step multiplies from the right.
 
 mod curvature;
+mod drift;
+mod drifting;
 mod node;
 mod rollout;
 mod slopes;
 
 pub use curvature::{Midpoints, RotationCurvature};
+pub use drift::Drift;
 pub use rollout::Rollout;
 pub use slopes::RotationSlopes;
 
+use drift::Collocation;
 use std::ops::{Add, Mul, Sub};
 
 use nalgebra::UnitQuaternion;
 
-use crate::momentum::base_twist;
+use crate::momentum::{BaseResponse, base_twist};
 use crate::robot::Robot;
 use crate::scalar::Scalar;
-use crate::so3;
+use crate::so3::{self, Quat};
 use crate::trajectory::Path;
 use crate::vec3::{Mat3, Vec3};
 
@@ -37,17 +41,28 @@ const GAUSS: [f64; 3] = [0.5 - SQRT_15 / 10.0, 0.5, 0.5 + SQRT_15 / 10.0];
 pub fn increments<'a>(
     robot: &'a Robot,
     steps: usize,
+    drift: Option<Drift>,
     write: impl Fn(f64, &mut [f64], &mut [f64]) + 'a,
 ) -> impl ExactSizeIterator<Item = UnitQuaternion<f64>> {
     let width = 1.0 / steps as f64;
     let mut angles = vec![0.0; robot.joint_count()];
     let mut rates = angles.clone();
+    let mut drift = drift.map(|drift| {
+        (Collocation::<3, 1>::new(&GAUSS, width), Quat::from(drift.start), drift.impulse())
+    });
     (0..steps).map(move |i| {
-        let mut rate = |node: f64| {
+        let mut at = |node: f64| {
             write((i as f64 + node) * width, &mut angles, &mut rates);
-            base_twist(robot, &angles, &rates).angular * width
+            BaseResponse::of(robot, &angles, &rates)
         };
-        so3::exp(magnus(gauss_moments(GAUSS.map(&mut rate)))).into()
+        let Some((collocation, attitude, impulse)) = &mut drift else {
+            let rates = GAUSS.map(|node| at(node).rate * width);
+            return so3::exp(magnus(gauss_moments(rates))).into();
+        };
+        let responses = GAUSS.map(at);
+        let step = collocation.panel(*attitude, *impulse, responses).rotation();
+        *attitude = attitude.then(step);
+        step.into()
     })
 }
 
@@ -71,7 +86,7 @@ pub fn net_rotation(robot: &Robot, path: &Path<'_>, steps: usize) -> UnitQuatern
     let write = |tau, angles: &mut [f64], rates: &mut [f64]| {
         path.angles_and_rates(tau, angles, rates);
     };
-    increments(robot, steps, write).fold(UnitQuaternion::identity(), |net, step| net * step)
+    increments(robot, steps, None, write).fold(UnitQuaternion::identity(), |net, step| net * step)
 }
 
 /// The moments of a step from what stands at its three Gauss nodes.

@@ -1,7 +1,7 @@
 //! The base's rate at one time of a path per lane, and how it follows the joints' phases.
 
 use crate::lanes::Lanes;
-use crate::momentum::RateSlopes;
+use crate::momentum::{BaseResponse, RateSlopes};
 use crate::robot::Robot;
 use crate::trajectory::{AtPhase, Family};
 use crate::vec3::Vec3;
@@ -75,13 +75,19 @@ impl<'a, T: Lanes, F: Family> Evaluator<'a, T, F> {
     /// The node where joints have these phases, whether a path meets them or not.
     #[inline(always)]
     pub(super) fn evaluate(&mut self, phases: &[[T; 2]], node: &mut Node<T>) {
-        self.joints.clear();
-        for (joint, &phase) in phases.iter().enumerate() {
-            let at = self.family.at_phase(joint, phase);
-            (self.angles[joint], self.rates[joint]) = (at.angle, at.rate);
-            self.joints.push(at);
-        }
-        self.slopes.evaluate(self.robot, &self.angles, &self.rates);
+        self.evaluate_drifting(phases, Vec3::zero(), node);
+    }
+
+    /// The same with an impulse along base axes, whatever turns these.
+    #[inline(always)]
+    pub(super) fn evaluate_drifting(
+        &mut self,
+        phases: &[[T; 2]],
+        impulse: Vec3<T>,
+        node: &mut Node<T>,
+    ) {
+        self.move_to(phases);
+        self.slopes.evaluate_drifting(self.robot, &self.angles, &self.rates, impulse);
         node.rate = self.slopes.angular;
         for (joint, at) in self.joints.iter().enumerate() {
             let (by_angle, by_rate) = (self.slopes.by_position[joint], self.slopes.by_rate[joint]);
@@ -89,6 +95,23 @@ impl<'a, T: Lanes, F: Family> Evaluator<'a, T, F> {
                 by_phase: by_angle * at.angle_slope + by_rate * at.rate_slope,
                 by_phase_rate: by_rate * at.angle_slope,
             };
+        }
+    }
+
+    /// How the base answers every impulse where joints have these phases.
+    #[inline(always)]
+    pub(super) fn response(&mut self, phases: &[[T; 2]]) -> BaseResponse<T> {
+        self.move_to(phases);
+        BaseResponse::of(self.robot, &self.angles, &self.rates)
+    }
+
+    #[inline(always)]
+    fn move_to(&mut self, phases: &[[T; 2]]) {
+        self.joints.clear();
+        for (joint, &phase) in phases.iter().enumerate() {
+            let at = self.family.at_phase(joint, phase);
+            (self.angles[joint], self.rates[joint]) = (at.angle, at.rate);
+            self.joints.push(at);
         }
     }
 }

@@ -7,6 +7,7 @@ use nalgebra::UnitQuaternion;
 use super::{GAUSS, gauss_moments, magnus};
 use crate::lanes::{Lanes, MOST};
 use crate::momentum::{Arm, JointState};
+use crate::scalar::Scalar;
 use crate::so3::{self, Quat};
 use crate::trajectory::Family;
 use crate::vec3::Vec3;
@@ -220,7 +221,7 @@ impl<F: Family> Rollout<F> {
 }
 
 /// All nodes of a panel, in order, in its widths.
-fn nodes() -> [f64; NODES] {
+pub(super) fn nodes() -> [f64; NODES] {
     from_fn(|n| if n < NODES / 2 { NODE_PLACES[n] } else { 1.0 - NODE_PLACES[NODES - 1 - n] })
 }
 
@@ -230,30 +231,38 @@ fn nodes() -> [f64; NODES] {
 /// in Lagrange's form.
 fn moments(nodes: &[f64; NODES], width: f64) -> [[[f64; NODES]; 3]; STEPS] {
     from_fn(|step| {
-        let mut moments = [[0.0; NODES]; 3];
-        for n in 0..NODES {
-            let at = |place: f64| -> f64 {
-                let others = (0..NODES).filter(|&m| m != n);
-                others.map(|m| (place - nodes[m]) / (nodes[n] - nodes[m])).product()
-            };
-            let places = GAUSS.map(|gauss| width * at((step as f64 + gauss) / STEPS as f64));
-            for (moment, own) in moments.iter_mut().zip(gauss_moments(places)) {
-                moment[n] = own;
-            }
-        }
-        moments
+        step_weights(nodes, GAUSS.map(|gauss| (step as f64 + gauss) / STEPS as f64), width)
     })
+}
+
+/// What the rate at each node adds to the moments of a step of this width that has its Gauss nodes at these places.
+pub(super) fn step_weights<const N: usize>(
+    nodes: &[f64; N],
+    gauss: [f64; 3],
+    width: f64,
+) -> [[f64; N]; 3] {
+    let mut moments = [[0.0; N]; 3];
+    for n in 0..N {
+        let at = |place: f64| -> f64 {
+            let others = (0..N).filter(|&m| m != n);
+            others.map(|m| (place - nodes[m]) / (nodes[n] - nodes[m])).product()
+        };
+        for (moment, own) in moments.iter_mut().zip(gauss_moments(gauss.map(|p| width * at(p)))) {
+            moment[n] = own;
+        }
+    }
+    moments
 }
 
 /// The moments of one step.
 #[inline(always)]
-pub(super) fn step_moments<T: Lanes>(
-    step: &[[f64; NODES]; 3],
-    rates: &[Vec3<T>; NODES],
+pub(super) fn step_moments<T: Scalar, const N: usize>(
+    step: &[[f64; N]; 3],
+    rates: &[Vec3<T>; N],
 ) -> [Vec3<T>; 3] {
     let mut moments = [Vec3::zero(); 3];
     for (moment, weights) in moments.iter_mut().zip(step) {
-        for n in 0..NODES {
+        for n in 0..N {
             *moment = rates[n].mul_add(T::of(weights[n]), *moment);
         }
     }

@@ -188,16 +188,30 @@ impl<F: Family> Rollout<F> {
         let mut sums = vec![Vec3::zero(); family.dimension()];
         for (n, node) in panels.nodes.iter().enumerate() {
             let place = Self::place(panels.first, n);
-            for (joint, slopes) in node.joints.iter().enumerate() {
-                let by_phase = turns[n] * slopes.by_phase;
-                let by_phase_rate = turns[n] * slopes.by_phase_rate;
-                let first = family.coefficients_of(joint).start;
-                for k in family.support::<T>(&self.nodes, joint, place) {
-                    let [bump, slope] = family.bump::<T>(&self.nodes, joint, k, place);
-                    sums[first + k] += by_phase * bump + by_phase_rate * slope;
-                }
-            }
+            self.add_turns(family, node, place, turns[n], &mut sums);
         }
         sums
+    }
+
+    /// Adds to each coefficient's sum what its change at a node turns the end by, where `turn` is what a change of the rate there
+    /// does.
+    #[inline(always)]
+    pub(super) fn add_turns<T: Lanes>(
+        &self,
+        family: &F,
+        node: &Node<T>,
+        place: usize,
+        turn: Mat3<T>,
+        sums: &mut [Vec3<T>],
+    ) {
+        for (joint, slopes) in node.joints.iter().enumerate() {
+            let by_phase = turn * slopes.by_phase;
+            let by_phase_rate = turn * slopes.by_phase_rate;
+            let first = family.coefficients_of(joint).start;
+            for k in family.support::<T>(&self.nodes, joint, place) {
+                let [bump, slope] = family.bump::<T>(&self.nodes, joint, k, place);
+                sums[first + k] += by_phase * bump + by_phase_rate * slope;
+            }
+        }
     }
 }

@@ -104,7 +104,7 @@ impl<T: Scalar> Dynamics<T> {
     fn evaluate_velocities_as<const PLAIN: bool>(
         &mut self,
         robot: &Robot,
-        State { positions, rates, .. }: State<'_, T>,
+        State { positions, rates, angular_momentum, .. }: State<'_, T>,
     ) -> Balance<T> {
         assert_eq!(rates.len(), robot.joint_count(), "one rate per joint");
         let tool = robot.tool();
@@ -120,7 +120,7 @@ impl<T: Scalar> Dynamics<T> {
             self.links.push(ForcedLink { moved, acceleration, force });
         };
         let (balance, momentum) = sweep::<T, PLAIN>(robot, positions, rates, each);
-        self.base = balance.twist(&momentum);
+        self.base = balance.twist(&momentum.less(angular_momentum));
         twist += self.base;
         self.tool_velocity = twist.linear + twist.angular.cross(at);
         balance
@@ -204,6 +204,7 @@ pub fn joint_torques(
     accelerations: &[f64],
 ) -> Vec<f64> {
     let mut dynamics = Dynamics::new(robot);
-    dynamics.evaluate(robot, State { positions, rates, accelerations });
+    dynamics
+        .evaluate(robot, State { positions, rates, accelerations, angular_momentum: Vec3::zero() });
     dynamics.torques
 }

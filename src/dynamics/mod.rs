@@ -1,8 +1,8 @@
 //! What of a state limits hold down: torques of joints, the tool's speed and the base's rate, with slopes.
 //!
-//! Total momentum is zero and nothing pulls from outside, so the base moves as the joints make it, and neither its
-//! attitude nor its place matters. Derivatives by any time will do: of rates and accelerations by the normalised time `τ`
-//! speeds come out times the duration `t_f`, torques times `t_f²`.
+//! Nothing pulls from outside, so the base moves as the joints and the total angular momentum make it, and neither its
+//! attitude nor its place matters. Derivatives by any time will do: of rates and accelerations by the normalised time `τ`,
+//! and of the momentum times the duration `t_f`, speeds come out times `t_f`, torques times `t_f²`.
 
 mod dual;
 mod forces;
@@ -10,6 +10,8 @@ mod slopes;
 
 pub use forces::{Dynamics, joint_torques};
 pub use slopes::{Slopes, tool_velocity, torque_slopes};
+
+use crate::vec3::Vec3;
 
 /// A number that every state has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -31,4 +33,6 @@ pub struct State<'a, T> {
     pub rates: &'a [T],
     /// Their second derivatives.
     pub accelerations: &'a [T],
+    /// Total angular momentum about the system's centre of mass, along base axes \[N·m·s\].
+    pub angular_momentum: Vec3<T>,
 }

@@ -43,7 +43,9 @@ impl LaneWork for Work<'_> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Slopes {
-        let Self { robot, quantity, state: State { positions, rates, accelerations } } = self;
+        let Self { robot, quantity, state } = self;
+        let State { positions, rates, accelerations, angular_momentum } = state;
+        let angular_momentum = angular_momentum.map(Dual::of);
         let count = robot.joint_count();
         let lifted = |numbers: &[f64]| -> Vec<_> { numbers.iter().map(|n| Dual::of(*n)).collect() };
         let mut moving = [lifted(positions), lifted(rates)].concat();
@@ -60,7 +62,7 @@ impl LaneWork for Work<'_> {
                 number.slope = T::load(&direction);
             }
             let (positions, rates) = moving.split_at(count);
-            let state = State { positions, rates, accelerations: &still };
+            let state = State { positions, rates, accelerations: &still, angular_momentum };
             let found = dynamics.value(robot, quantity, state);
             value = found.value.numbers()[0];
             slopes.extend(&found.slope.numbers()[..T::COUNT]);
@@ -95,7 +97,8 @@ pub fn torque_slopes(
     accelerations: &[f64],
     joint: usize,
 ) -> [Vec<f64>; 3] {
-    let state = State { positions, rates, accelerations };
+    let angular_momentum = Vec3::zero();
+    let state = State { positions, rates, accelerations, angular_momentum };
     let slopes = Slopes::of(robot, Quantity::Torque(joint), state);
     [slopes.by_position, slopes.by_rate, slopes.by_acceleration]
 }
@@ -107,7 +110,8 @@ pub fn torque_slopes(
 /// Panics when there are more or fewer positions or rates than joints that move.
 pub fn tool_velocity(robot: &Robot, positions: &[f64], rates: &[f64]) -> Vec3<f64> {
     let mut dynamics = Dynamics::new(robot);
-    let state = State { positions, rates, accelerations: &[] };
+    let angular_momentum = Vec3::zero();
+    let state = State { positions, rates, accelerations: &[], angular_momentum };
     dynamics.value(robot, Quantity::ToolSpeed, state);
     dynamics.tool_velocity
 }

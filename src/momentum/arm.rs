@@ -157,7 +157,8 @@ impl Arm {
         let mut system = RigidBody { mass: self.base.mass, first_moment, inertia };
         system.first_moment += self.base.first_moment.lift();
         system.inertia += self.base.inertia.lift();
-        let (centre, (adjugate, determinant)) = system.about_centre();
+        let (centre, inertia) = system.about_centre();
+        let (adjugate, determinant) = inertia.adjugate();
         (adjugate * (centre.cross(linear) - angular)) * (T::of(1.0) / determinant)
     }
 

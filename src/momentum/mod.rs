@@ -1,4 +1,7 @@
-//! How the base answers the joints when total momentum is zero (eqs. 5–7), in base axes.
+//! How the base answers the joints (eqs. 5–7), in base axes.
+//!
+//! Total linear momentum is zero: inertial axes move with the system's centre of mass. Total angular momentum is zero
+//! unless a function takes it.
 
 mod arm;
 mod assembly;
@@ -31,12 +34,63 @@ pub struct Twist<T> {
 /// about the system's centre of mass the angular part then stands alone, a 3×3 solve.
 #[inline(always)]
 pub fn base_twist<T: Scalar>(robot: &Robot, positions: &[T], rates: &[T]) -> Twist<T> {
-    let (balance, momentum) = if robot.is_plain() {
+    drifting_twist(robot, positions, rates, Vec3::zero())
+}
+
+/// The same with a total angular momentum \[N·m·s\] about the system's centre of mass, along base axes.
+#[inline(always)]
+pub fn drifting_twist<T: Scalar>(
+    robot: &Robot,
+    positions: &[T],
+    rates: &[T],
+    angular_momentum: Vec3<T>,
+) -> Twist<T> {
+    let (balance, momentum) = swept(robot, positions, rates);
+    balance.twist(&momentum.less(angular_momentum))
+}
+
+/// The base's angular velocity `ω = rate + inverse · h` along base axes for every angular momentum `h` along these
+/// axes.
+#[derive(Debug, Clone, Copy)]
+pub struct BaseResponse<T> {
+    /// With zero total momentum \[rad/s\].
+    pub rate: Vec3<T>,
+    /// Inverse of the whole system's inertia about its centre of mass \[1/(kg·m²)\].
+    pub inverse: Sym3<T>,
+}
+
+impl<T: Scalar> BaseResponse<T> {
+    /// For joint positions \[rad or m\] and rates \[rad/s or m/s\].
+    #[inline(always)]
+    pub fn of(robot: &Robot, positions: &[T], rates: &[T]) -> Self {
+        let (balance, momentum) = swept(robot, positions, rates);
+        Self { rate: balance.angular(&momentum), inverse: balance.inverse }
+    }
+
+    /// `ω` with an angular momentum along base axes.
+    #[inline(always)]
+    pub fn with(&self, angular_momentum: Vec3<T>) -> Vec3<T> {
+        self.rate + self.inverse * angular_momentum
+    }
+}
+
+/// Total angular momentum \[N·m·s\], along base axes, of a robot whose joints stand still while its base turns at this
+/// rate \[rad/s\].
+pub fn locked_momentum(robot: &Robot, positions: &[f64], rate: Vec3<f64>) -> Vec3<f64> {
+    let mut system = RigidBody::base(robot);
+    for link in Outward::<_>::new(robot, positions) {
+        system += RigidBody::link(&link);
+    }
+    system.about_centre().1 * rate
+}
+
+#[inline(always)]
+fn swept<T: Scalar>(robot: &Robot, positions: &[T], rates: &[T]) -> (Balance<T>, Momentum<T>) {
+    if robot.is_plain() {
         sweep::<T, true>(robot, positions, rates, |_, _| {})
     } else {
         sweep::<T, false>(robot, positions, rates, |_, _| {})
-    };
-    balance.twist(&momentum)
+    }
 }
 
 /// One link with the base held still.
@@ -155,6 +209,12 @@ impl<T: Scalar> Momentum<T> {
     pub(crate) fn zero() -> Self {
         Self { linear: Vec3::zero(), angular: Vec3::zero() }
     }
+
+    /// What is left once the system has an angular momentum, and no linear one.
+    #[inline(always)]
+    pub(crate) fn less(self, angular: Vec3<T>) -> Self {
+        Self { angular: self.angular - angular, ..self }
+    }
 }
 
 impl<T: Scalar> AddAssign for Momentum<T> {
@@ -215,18 +275,19 @@ impl<T: Scalar> RigidBody<T> {
     /// Ready to answer what twist of the whole balances a momentum.
     #[inline(always)]
     fn balance(&self) -> Balance<T> {
-        let (centre, (adjugate, determinant)) = self.about_centre();
+        let (centre, inertia) = self.about_centre();
+        let (adjugate, determinant) = inertia.adjugate();
         let inverse = adjugate * (T::of(1.0) / determinant);
         Balance { per_mass: 1.0 / self.mass, centre, inverse }
     }
 
-    /// The centre of mass, and adjugate and determinant of the inertia about it.
+    /// The centre of mass, and the inertia about it.
     #[inline(always)]
-    fn about_centre(&self) -> (Vec3<T>, (Sym3<T>, T)) {
+    fn about_centre(&self) -> (Vec3<T>, Sym3<T>) {
         let centre = self.first_moment.times(1.0 / self.mass);
         let mut inertia = self.inertia;
         inertia -= Sym3::point(centre, self.first_moment);
-        (centre, inertia.adjugate())
+        (centre, inertia)
     }
 }
 

@@ -38,19 +38,38 @@ impl<T: Scalar> RateSlopes<T> {
     /// Evaluates at joint positions \[rad or m\] and rates \[rad/s or m/s\] with zero total momentum.
     #[inline(always)]
     pub fn evaluate(&mut self, robot: &Robot, positions: &[T], rates: &[T]) {
+        self.evaluate_drifting(robot, positions, rates, Vec3::zero());
+    }
+
+    /// The same with a total angular momentum \[N·m·s\] about the system's centre of mass, along base axes, that derivatives
+    /// leave as it is.
+    #[inline(always)]
+    pub fn evaluate_drifting(
+        &mut self,
+        robot: &Robot,
+        positions: &[T],
+        rates: &[T],
+        angular_momentum: Vec3<T>,
+    ) {
         if robot.is_plain() {
-            self.evaluate_as::<true>(robot, positions, rates);
+            self.evaluate_as::<true>(robot, positions, rates, angular_momentum);
         } else {
-            self.evaluate_as::<false>(robot, positions, rates);
+            self.evaluate_as::<false>(robot, positions, rates, angular_momentum);
         }
     }
 
     #[inline(always)]
-    fn evaluate_as<const PLAIN: bool>(&mut self, robot: &Robot, positions: &[T], rates: &[T]) {
+    fn evaluate_as<const PLAIN: bool>(
+        &mut self,
+        robot: &Robot,
+        positions: &[T],
+        rates: &[T],
+        angular_momentum: Vec3<T>,
+    ) {
         self.links.clear();
         let each = |_: &LinkPose<'_, T>, link| self.links.push(link);
         let (balance, momentum) = sweep::<T, PLAIN>(robot, positions, rates, each);
-        let base = balance.twist(&momentum);
+        let base = balance.twist(&momentum.less(angular_momentum));
         self.angular = base.angular;
 
         let mut bodies = Gathered::new(robot, RigidBody::none());

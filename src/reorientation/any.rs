@@ -156,7 +156,7 @@ pub trait AnyReorientation: Debug + Send + Sync {
     /// # Panics
     ///
     /// Panics when there are more or fewer coefficients than the family's dimension.
-    fn error(&self, coefficients: &[f64]) -> UnitQuaternion<f64>;
+    fn error(&self, coefficients: &[f64], duration: f64) -> UnitQuaternion<f64>;
 
     /// The motion, sampled; see [`Motion::sample`].
     fn sample_at(&self, coefficients: &[f64], duration: f64, sampling: Sampling) -> Motion;
@@ -167,7 +167,7 @@ pub trait AnyReorientation: Debug + Send + Sync {
     }
 
     /// Whether motions beside this one end nearer to the goal; see [`Reorientation::is_held_by_time`].
-    fn is_held_by_time(&self, coefficients: &[f64]) -> bool;
+    fn is_held_by_time(&self, coefficients: &[f64], duration: f64) -> bool;
 
     /// The paper's powers of time of a motion; see [`SearchedFamily::powers`].
     fn powers(&self, coefficients: &[f64], duration: f64) -> Option<Vec<Vec<f64>>>;
@@ -207,8 +207,8 @@ impl<F: SearchedFamily> AnyReorientation for Reorientation<F> {
         self.certify(coefficients, duration)
     }
 
-    fn error(&self, coefficients: &[f64]) -> UnitQuaternion<f64> {
-        self.error_after(self.net_rotation(coefficients))
+    fn error(&self, coefficients: &[f64], duration: f64) -> UnitQuaternion<f64> {
+        self.error_after(self.net_rotation(coefficients, duration))
     }
 
     fn sample_at(&self, coefficients: &[f64], duration: f64, sampling: Sampling) -> Motion {
@@ -219,8 +219,8 @@ impl<F: SearchedFamily> AnyReorientation for Reorientation<F> {
         Arc::new(self.clone())
     }
 
-    fn is_held_by_time(&self, coefficients: &[f64]) -> bool {
-        self.is_held_by_time(coefficients)
+    fn is_held_by_time(&self, coefficients: &[f64], duration: f64) -> bool {
+        self.is_held_by_time(coefficients, duration)
     }
 
     fn powers(&self, coefficients: &[f64], duration: f64) -> Option<Vec<Vec<f64>>> {

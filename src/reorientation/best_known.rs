@@ -179,6 +179,8 @@ pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
         goal,
         tool: _,
         limits,
+        momentum,
+        least_duration,
         base_weight,
         goal_tolerance: _,
         path,
@@ -202,6 +204,13 @@ pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
     if let Some(path) = path.identity(robot) {
         // Cones stand in inertial axes.
         determinants["path"] = json!({ "limits": path, "start": start.base.coords.as_slice() });
+    }
+    if let Some(momentum) = momentum {
+        let at_start = start.base.inverse() * momentum;
+        determinants["momentum"] = json!(at_start.as_slice());
+    }
+    if *least_duration > 0.0 {
+        determinants["least_duration"] = json!(least_duration);
     }
     if let Some(robust) = robust {
         determinants["robust"] = robust.identity();

@@ -1,15 +1,16 @@
 //! First and second derivatives of the cost, for optimisers that use them.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix3xX, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
 
 use super::fitness::Reorientation;
 use super::measure::Tables;
-use crate::attitude::{Rollout, RotationCurvature, RotationSlopes};
+use crate::attitude::{Rollout, RotationCurvature};
 use crate::lanes::{LaneWork, Lanes};
 use crate::search::{
     Bent, ErrorSlopes, Failure, LinearLimits, Linearisation, Multipliers, Piece, PieceId,
     TimedParts, TimedWeights,
 };
+use crate::task::Task;
 use crate::trajectory::{Curve, Family, LocalPeak, Peak, duration_asked};
 
 /// How far below the largest, as a share of it, a part may lie to be linearised too.
@@ -19,15 +20,8 @@ impl<F: Family> Reorientation<F> {
     /// The time-free cost's parts: the vector part of the base's error, and the duration that each
     /// local peak of rate, acceleration and jerk asks for.
     pub(super) fn linearise(&self, coefficients: &[f64]) -> Linearisation {
-        let slopes = self.rotation_slopes(&self.tables().rollout, coefficients);
-        let samples = self.samples(coefficients);
-        let limits = &self.task().limits;
-        let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
-        let curves: Vec<_> = self.curves(coefficients).collect();
-        let mut durations: Vec<Piece> = places
-            .into_iter()
-            .map(|place| self.duration_piece(&curves[place.joint], place))
-            .collect();
+        let mut durations = self.asked_durations(coefficients);
+        let error = self.error_slopes(coefficients, &Timing::of_longest(self.task(), &durations));
         let mut found = Vec::new();
         let mut violation = 0.0;
         if let Some(sampled) = self.sampled(coefficients) {
@@ -37,25 +31,60 @@ impl<F: Family> Reorientation<F> {
             found = pieces.terms();
             violation = pieces.excess;
         }
-        let mut linearisation = self.terms().time_free(self.base_error_pieces(&slopes), durations);
+        let mut linearisation = self.terms().time_free(error_pieces(&error), durations);
         linearisation.terms.extend(found);
         linearisation.terms.extend(self.robust_term(coefficients));
         linearisation.with_violation(violation)
+    }
+
+    /// The durations that local peaks of rate, acceleration and jerk ask for, and the least one.
+    fn asked_durations(&self, coefficients: &[f64]) -> Vec<Piece> {
+        let samples = self.samples(coefficients);
+        let limits = &self.task().limits;
+        let places = self.family().local_peaks(&samples, coefficients, limits, NEAR);
+        let curves: Vec<_> = self.curves(coefficients).collect();
+        let asked =
+            places.into_iter().map(|place| self.duration_piece(&curves[place.joint], place));
+        let least = self.task().least_duration;
+        let floor = (least > 0.0).then(|| Piece {
+            id: PieceId::alone(FLOOR),
+            value: least,
+            gradient: DVector::zeros(coefficients.len()),
+        });
+        asked.chain(floor).collect()
+    }
+
+    /// How long the shortest motion along a path takes, where the base's error follows that.
+    pub(super) fn timing(&self, coefficients: &[f64]) -> Timing {
+        if self.task().momentum.is_none() {
+            return Timing::default();
+        }
+        if self.family().is_linear() {
+            Timing::of_limits(&self.limits(&self.samples(coefficients)), coefficients.len())
+        } else {
+            Timing::of_longest(self.task(), &self.asked_durations(coefficients))
+        }
     }
 
     /// A subgradient of the cost of a motion that lasts `duration` seconds: its slopes by the coefficients, and that by the
     /// duration.
     pub(super) fn slopes_over(&self, coefficients: &[f64], duration: f64) -> (DVector<f64>, f64) {
         let weights = self.terms().timed();
-        // The error and the excess over the ranges do not follow the duration.
         let untimed = TimedWeights { time: 0.0, ..weights };
-        let error = self.error_slopes(coefficients);
+        let timing = Timing { duration, slopes: None };
+        let (error, error_by_duration) =
+            self.error_slopes_by(&self.tables().rollout, coefficients, &timing);
         let samples = self.samples(coefficients);
         let is_linear = self.family().is_linear();
         let limits = if is_linear { self.limits(&samples) } else { LinearLimits::default() };
+        let size = error.value.norm();
+        let along = error.value.dot(&error_by_duration);
         let parts = TimedParts { limits, error, bent: Bent::default() };
         let mut slopes = untimed.subgradient(&parts).slopes;
         let mut by_duration = weights.time;
+        if size > 0.0 {
+            by_duration += weights.error * along / size;
+        }
         if let Some(sampled) = self.sampled(coefficients) {
             let pieces = sampled.pieces(self.width(), duration, 0);
             let (more, by) = pieces.slopes_over(duration);
@@ -94,31 +123,37 @@ impl<F: Family> Reorientation<F> {
     }
 
     /// The base's error, for families whose derivatives are linear in their coefficients.
-    pub(super) fn error_slopes(&self, coefficients: &[f64]) -> ErrorSlopes {
-        self.error_slopes_by(&self.tables().rollout, coefficients)
+    pub(super) fn error_slopes(&self, coefficients: &[f64], timing: &Timing) -> ErrorSlopes {
+        self.error_slopes_by(&self.tables().rollout, coefficients, timing).0
     }
 
     /// The same, right to a few digits.
-    pub(super) fn rough_error_slopes(&self, coefficients: &[f64]) -> ErrorSlopes {
-        self.error_slopes_by(&self.tables().rough, coefficients)
+    pub(super) fn rough_error_slopes(&self, coefficients: &[f64], timing: &Timing) -> ErrorSlopes {
+        self.error_slopes_by(&self.tables().rough, coefficients, timing).0
     }
 
-    fn error_slopes_by(&self, rollout: &Rollout<F>, coefficients: &[f64]) -> ErrorSlopes {
-        let (error, slopes) = self.base_error(&self.rotation_slopes(rollout, coefficients));
-        ErrorSlopes {
-            value: DVector::from_column_slice(error.as_slice()),
-            slopes: DMatrix::from_column_slice(3, slopes.ncols(), slopes.as_slice()),
-        }
-    }
-
-    fn rotation_slopes(&self, rollout: &Rollout<F>, coefficients: &[f64]) -> RotationSlopes {
-        rollout.slopes(self.width(), &self.task().robot, self.family(), coefficients)
-    }
-
-    /// The vector part of the base's error, and its slopes by the coefficients.
-    fn base_error(&self, net: &RotationSlopes) -> (Vector3<f64>, Matrix3xX<f64>) {
+    /// The same, with the derivative by the duration.
+    fn error_slopes_by(
+        &self,
+        rollout: &Rollout<F>,
+        coefficients: &[f64],
+        timing: &Timing,
+    ) -> (ErrorSlopes, DVector<f64>) {
+        let (width, family, task) = (self.width(), self.family(), self.task());
+        let drift = task.drift(task.start.base, timing.duration);
+        let (net, turn_by_duration) = match drift {
+            None => (rollout.slopes(width, &task.robot, family, coefficients), Vector3::zeros()),
+            Some(drift) => rollout.drifting_slopes(width, &task.robot, family, coefficients, drift),
+        };
         let (error, by_turn) = self.turned_error(net.rotation);
-        (error.imag(), by_turn * &net.by_coefficient)
+        let mut slopes = by_turn * &net.by_coefficient;
+        let by_duration = by_turn * turn_by_duration;
+        if let Some(duration_slopes) = &timing.slopes {
+            slopes.ger(1.0, &by_duration, duration_slopes, 1.0);
+        }
+        let slopes = DMatrix::from_column_slice(3, slopes.ncols(), slopes.as_slice());
+        let value = DVector::from_column_slice(error.imag().as_slice());
+        (ErrorSlopes { value, slopes }, DVector::from_column_slice(by_duration.as_slice()))
     }
 
     /// The joints' paths.
@@ -126,17 +161,6 @@ impl<F: Family> Reorientation<F> {
         let family = self.family();
         (0..family.joints())
             .map(move |joint| family.curve(joint, &coefficients[family.coefficients_of(joint)]))
-    }
-
-    /// The components of the base's error.
-    fn base_error_pieces(&self, net: &RotationSlopes) -> Vec<Piece> {
-        let (error, jacobian) = self.base_error(net);
-        let piece = |(component, value): (usize, &f64)| Piece {
-            id: PieceId::alone(component as u64),
-            value: *value,
-            gradient: jacobian.row(component).transpose(),
-        };
-        error.iter().enumerate().map(piece).collect()
     }
 
     /// The base's error, and how its vector part follows a turn of the base's end in base axes.
@@ -172,6 +196,44 @@ impl<F: Family> Reorientation<F> {
     /// How many tracks [`to_id`] has for peaks of joints.
     fn joint_tracks(&self) -> u64 {
         3 * self.family().joints() as u64
+    }
+}
+
+/// The components of an error.
+fn error_pieces(ErrorSlopes { value, slopes }: &ErrorSlopes) -> Vec<Piece> {
+    let piece = |(component, value): (usize, &f64)| Piece {
+        id: PieceId::alone(component as u64),
+        value: *value,
+        gradient: slopes.row(component).transpose(),
+    };
+    value.iter().enumerate().map(piece).collect()
+}
+
+/// The track of the least duration among pieces.
+const FLOOR: u64 = u64::MAX;
+
+/// How long a motion takes, and how that follows the coefficients, where the limits say how long. Without momentum neither matters.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Timing {
+    /// \[s\]
+    pub(super) duration: f64,
+    slopes: Option<DVector<f64>>,
+}
+
+impl Timing {
+    fn of_longest(task: &Task, durations: &[Piece]) -> Self {
+        if task.momentum.is_none() {
+            return Self::default();
+        }
+        let longest = durations.iter().max_by(|a, b| a.value.total_cmp(&b.value));
+        longest.map_or_else(Self::default, |piece| Self {
+            duration: piece.value,
+            slopes: Some(piece.gradient.clone()),
+        })
+    }
+
+    fn of_limits(limits: &LinearLimits, variables: usize) -> Self {
+        Self { duration: limits.time, slopes: Some(limits.time_slopes(variables)) }
     }
 }
 
@@ -261,7 +323,8 @@ impl<F: Family> Reorientation<F> {
     }
 
     fn base_error_curvature(&self, coefficients: &[f64], nu: &Vector3<f64>) -> DMatrix<f64> {
-        let (error, by_turn) = self.turned_error(self.net_rotation(coefficients));
+        let duration = self.timing(coefficients).duration;
+        let (error, by_turn) = self.turned_error(self.net_rotation(coefficients, duration));
         let turned =
             self.width().run(Bend { problem: self, coefficients, vector: by_turn.tr_mul(nu) });
         // The vector part of q ⊗ exp(½ v) is the line along v less |v|²/8 of itself.

@@ -108,11 +108,12 @@ fn watched(task: &Task, pairs: usize) -> Vec<Watched> {
 }
 
 /// The samples of a motion.
-pub(super) fn places(motion: &Motion) -> Vec<Place> {
+pub(super) fn places(task: &Task, motion: &Motion) -> Vec<Place> {
     let place = |at: usize| {
         let joints = || motion.joints.iter().map(|joint| joint.derivatives[at]);
         let derivatives = [0, 1, 2].map(|order| joints().map(|all| all[order]).collect());
-        Place::new(motion.time[at], derivatives, motion.base[at])
+        let momentum = task.momentum_at(&motion.base[at]);
+        Place::new(motion.time[at], derivatives, motion.base[at], momentum)
     };
     (0..motion.time.len()).map(place).collect()
 }
@@ -127,7 +128,7 @@ impl Excursions {
             (Arc::new(bodies), shapes)
         };
         let watched = watched(task, bodies.pairs().len());
-        let places = places(motion);
+        let places = places(task, motion);
         let heights = Heights {
             task,
             bodies: Some(&bodies),

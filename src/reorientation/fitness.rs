@@ -7,7 +7,7 @@ use nalgebra::UnitQuaternion;
 
 use super::accuracy::Accuracy;
 use super::measure::{Fitness, Given, Tables, Turn, Workspace};
-use super::path::{PathPeak, Sampled};
+use super::path::{PathPeak, Sampled, Way};
 use super::terms::{Terms, penalty};
 use crate::lanes::Width;
 use crate::search::Evaluation;
@@ -191,16 +191,16 @@ impl<F: Family> Reorientation<F> {
     ) -> (UnitQuaternion<f64>, Assessment) {
         self.check(coefficients);
         let samples = self.samples(coefficients);
-        let off = self.error_after(self.net_rotation(coefficients));
-        let attitude_error = off.imag().norm();
         let peaks = self.family.peaks(&samples, coefficients);
         let range_excess = self.range_excess(&samples);
         let sampled = self.sampled(coefficients);
         let way = sampled.as_ref().map(Sampled::way).unwrap_or_default();
         let (duration, excess) = match duration {
             Some(duration) => (duration, peaks.over(duration).excess(&self.task.limits)),
-            None => (peaks.shortest_duration(&self.task.limits).max(way.duration()), [0.0; 3]),
+            None => (self.allowed(peaks.shortest_duration(&self.task.limits), &way), [0.0; 3]),
         };
+        let off = self.error_after(self.net_rotation(coefficients, duration));
+        let attitude_error = off.imag().norm();
         let path_excess = way.excess(duration);
         let beyond = range_excess + path_excess;
         let assessment = Assessment {
@@ -232,7 +232,7 @@ impl<F: Family> Reorientation<F> {
         workspace: &mut Workspace<F>,
     ) -> Evaluation {
         self.check(coefficients);
-        let (attitude_error, largest) =
+        let (net, largest) =
             self.width.run(Fitness { given: self.given(), coefficients, duration, workspace });
         let way = self.sampled(coefficients).map(|sampled| sampled.way()).unwrap_or_default();
         let (duration, excess) = match duration {
@@ -240,13 +240,20 @@ impl<F: Family> Reorientation<F> {
                 let allowed = powers(duration);
                 (duration, excess(from_fn(|k| largest[k] / allowed[k])))
             }
-            None => (longest_asked(largest).max(way.duration()), [0.0; 3]),
+            None => (self.allowed(longest_asked(largest), &way), [0.0; 3]),
         };
+        let net = net.unwrap_or_else(|| self.net_rotation(coefficients, duration));
+        let attitude_error = self.error_after(net).imag().norm();
         let beyond = self.range_excess(&workspace.samples) + way.excess(duration);
         let cost = self.terms().cost(attitude_error, duration, &excess, beyond)
             + Terms::turns(&self.task.path.turn_weights, &way.turns)
             + self.robust_cost(coefficients);
         Evaluation { cost, violation: excess.iter().sum::<f64>() + beyond }
+    }
+
+    /// The shortest duration where the joints' limits ask for one.
+    fn allowed(&self, asked: f64, way: &Way) -> f64 {
+        asked.max(way.duration()).max(self.task.least_duration)
     }
 
     /// The path, looked at where the task asks for something on the way.
@@ -269,14 +276,20 @@ impl<F: Family> Reorientation<F> {
         self.given().error_after(net)
     }
 
-    /// The base's rotation over the path with these coefficients.
+    /// The base's rotation over the path with these coefficients, in `duration` seconds, which do not matter without momentum.
     ///
     /// # Panics
     ///
     /// Panics when there are more or fewer coefficients than the family's dimension.
-    pub fn net_rotation(&self, coefficients: &[f64]) -> UnitQuaternion<f64> {
+    pub fn net_rotation(&self, coefficients: &[f64], duration: f64) -> UnitQuaternion<f64> {
         self.check(coefficients);
-        self.width.run(Turn { given: self.given(), coefficients, joints: &mut Vec::new() })
+        let Task { robot, start, .. } = &*self.task;
+        let Some(drift) = self.task.drift(start.base, duration) else {
+            let joints = &mut Vec::new();
+            return self.width.run(Turn { given: self.given(), coefficients, joints });
+        };
+        let Tables { rollout, .. } = self.tables();
+        rollout.drifting_rotation(self.width, robot, &self.family, coefficients, drift)
     }
 }
 

@@ -82,7 +82,7 @@ impl Formulated {
             }
         };
         if formulation != Formulation::TimeFree {
-            pairs.push(boxes.duration);
+            pairs.push(boxes.duration.map(|end| end.max(task.task().least_duration)));
         }
         let powers = (formulation == Formulation::Raw).then(|| family.clone());
         Ok(Self {
@@ -137,8 +137,9 @@ impl Formulated<Spline> {
         task: Arc<Reorientation<Spline>>,
         boxes: &SplineBox,
     ) -> Result<Self, BoundsError> {
+        let duration = boxes.duration.map(|end| end.max(task.task().least_duration));
         let free = Self::free_form(task)?;
-        let bounds = Bounds::new(free.bounds.iter().chain([boxes.duration]).collect())?;
+        let bounds = Bounds::new(free.bounds.iter().chain([duration]).collect())?;
         Ok(Self { formulation: Formulation::Scaled, bounds, ..free })
     }
 }

@@ -45,7 +45,7 @@ pub(super) fn limited(task: &Task, motion: &Motion) -> Vec<Limited> {
     let torques = (0..task.robot.joint_count()).map(Watched::Torque);
     let watched = [Watched::BaseTurn, Watched::BaseRate, Watched::ToolSpeed];
     let watched: Vec<Watched> = watched.into_iter().chain(cones).chain(torques).collect();
-    let places = places(motion);
+    let places = places(task, motion);
     let heights =
         Heights { task, bodies: None, far: f64::INFINITY, watched: &watched, places: &places };
     let heights = Width::widest().run(heights);

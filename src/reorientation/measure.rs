@@ -95,8 +95,8 @@ impl<F: Family> Given<'_, F> {
     }
 }
 
-/// All that the cost follows from: `‖δq_b‖`, and of each order the largest peak as a multiple of its limit,
-/// where it matters.
+/// All that the cost follows from: the base's rotation, unless it follows the duration, and of each order the largest peak as a
+/// multiple of its limit, where it matters.
 pub(super) struct Fitness<'a, F: Family> {
     pub(super) given: Given<'a, F>,
     pub(super) coefficients: &'a [f64],
@@ -105,15 +105,13 @@ pub(super) struct Fitness<'a, F: Family> {
 }
 
 impl<F: Family> LaneWork for Fitness<'_, F> {
-    type Output = (f64, [f64; 3]);
+    type Output = (Option<UnitQuaternion<f64>>, [f64; 3]);
 
     #[inline(always)]
-    fn run<T: Lanes>(self) -> (f64, [f64; 3]) {
+    fn run<T: Lanes>(self) -> Self::Output {
         let Self { given, coefficients, duration, workspace } = self;
         let Workspace { samples, joints } = workspace;
         given.family.sample::<T>(&given.tables.sampler, coefficients, samples);
-        let net = Turn { given, coefficients, joints }.run::<T>();
-        let error = given.error_after(net).imag().norm();
         let matters = |known: [f64; 3]| match duration {
             // Within a limit it does not matter how far.
             Some(duration) => {
@@ -124,11 +122,16 @@ impl<F: Family> LaneWork for Fitness<'_, F> {
         };
         let (limits, family) = (&given.task.limits, given.family);
         let largest = family.largest_ratio::<T>(samples, limits, matters, coefficients);
-        (error, largest)
+        let net = if given.task.momentum.is_none() {
+            Some(Turn { given, coefficients, joints }.run::<T>())
+        } else {
+            None
+        };
+        (net, largest)
     }
 }
 
-/// The base's rotation over a path.
+/// The base's rotation over a path without momentum.
 pub(super) struct Turn<'a, F: Family> {
     pub(super) given: Given<'a, F>,
     pub(super) coefficients: &'a [f64],

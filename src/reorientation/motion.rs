@@ -3,7 +3,7 @@
 use std::array::from_fn;
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::fitness::Reorientation;
 use super::sampling::Sampling;
@@ -17,7 +17,7 @@ const SAME_ATTITUDE: f64 = 1e-8;
 const MOST_STEPS: usize = 1 << 17;
 
 /// Everything that moves, at times from start to end.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Motion {
     /// Time since the start \[s\].
     pub time: Vec<f64>,
@@ -25,6 +25,8 @@ pub struct Motion {
     pub joints: Vec<JointMotion>,
     /// The base's attitude, base axes into inertial axes.
     pub base: Vec<UnitQuaternion<f64>>,
+    /// Total angular momentum, inertial axes \[N·m·s\].
+    pub momentum: Vector3<f64>,
 }
 
 /// One joint over time.
@@ -72,24 +74,30 @@ impl Motion {
                 [*angle, *rate] = curve.derivatives(tau);
             }
         };
-        let turns = |from: f64, to: f64, steps| {
+        let turns = |start: UnitQuaternion<f64>, [from, to]: [f64; 2], steps| {
+            let drift = task.drift(start, duration * (to - from));
             let part = move |place, angles: &mut [f64], rates: &mut [f64]| {
                 write(from + place * (to - from), angles, rates);
                 for rate in rates {
                     *rate *= to - from;
                 }
             };
-            increments(&task.robot, steps, part)
+            increments(&task.robot, steps, drift, part)
         };
         let base_in = |steps: usize| -> Vec<UnitQuaternion<f64>> {
             let mut attitude = task.start.base;
-            let rest = (share < 1.0).then(|| turns(share, 1.0, steps)).into_iter().flatten();
-            let ends = turns(0.0, share, intervals * steps).chain(rest).map(|step| {
-                attitude *= step;
-                attitude
-            });
-            let ends = ends.skip(steps - 1).step_by(steps);
-            std::iter::once(task.start.base).chain(ends).collect()
+            let mut all = vec![attitude];
+            let mut follow = |span: [f64; 2], intervals: usize| {
+                for (i, step) in (1..).zip(turns(attitude, span, intervals * steps)) {
+                    attitude *= step;
+                    all.extend((i % steps == 0).then_some(attitude));
+                }
+            };
+            follow([0.0, share], intervals);
+            if share < 1.0 {
+                follow([share, 1.0], 1);
+            }
+            all
         };
         let (mut base, mut steps) = (base_in(1), 1);
         let joints: Vec<JointMotion> = joints.collect();
@@ -106,7 +114,7 @@ impl Motion {
                 break;
             }
         }
-        Self { time, joints, base }
+        Self { time, joints, base, momentum: task.momentum.unwrap_or_default() }
     }
 
     /// Goes on with another motion, which starts where and when this one ends.
@@ -152,8 +160,6 @@ pub(super) fn zyx_near(attitude: &UnitQuaternion<f64>, other: [f64; 3]) -> [f64;
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
-
     use super::*;
 
     /// Attitudes by the product of three rotations: angles that grow evenly are found again, beyond full and half turns, and beyond a
@@ -169,7 +175,7 @@ mod tests {
                     * about(Vector3::y_axis(), *pitch)
                     * about(Vector3::x_axis(), *roll)
             });
-            let motion = Motion { time: Vec::new(), joints: Vec::new(), base: base.collect() };
+            let motion = Motion { base: base.collect(), ..Motion::default() };
             for (found, expected) in motion.base_zyx().iter().zip(&expected) {
                 let miss = (0..3).map(|k| (found[k] - expected[k]).abs()).fold(0.0, f64::max);
                 assert!(miss < 1e-9, "{found:?} {expected:?}");

@@ -66,6 +66,10 @@ impl Reach {
         if motion.is_within(task.goal_tolerance) {
             return if Self::keeps_limits(motion) { Self::Reached } else { Self::NotFound };
         }
+        if task.momentum.is_some() {
+            // Momentum turns the base as well.
+            return Self::NotFound;
+        }
         let turns = BaseTurns::of(task);
         let turn = (task.start.base.inverse() * task.goal.base).scaled_axis();
         if let Some(block) = turns.block(&turn, task) {
@@ -105,8 +109,8 @@ const SHARES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 
 impl<F: Family> Reorientation<F> {
     /// Whether motions beside this one end nearer to the goal. At the end of a search they were passed over for their time.
-    pub fn is_held_by_time(&self, coefficients: &[f64]) -> bool {
-        let error = |c: &[f64]| self.error_after(self.net_rotation(c)).scaled_axis();
+    pub fn is_held_by_time(&self, coefficients: &[f64], duration: f64) -> bool {
+        let error = |c: &[f64]| self.error_after(self.net_rotation(c, duration)).scaled_axis();
         let here = error(coefficients);
         let mut slopes = Matrix3xX::zeros(coefficients.len());
         let mut there = coefficients.to_vec();
@@ -238,7 +242,7 @@ fn is_holonomic(task: &Task) -> bool {
                 [f64::midpoint(*lower, *upper), slow, phase(), fast, phase()]
             })
             .collect();
-        let steps = increments(&task.robot, LOOP_STEPS, |tau, positions, rates| {
+        let steps = increments(&task.robot, LOOP_STEPS, None, |tau, positions, rates| {
             for ((position, rate), [middle, slow, first, fast, second]) in
                 positions.iter_mut().zip(&mut *rates).zip(&waves)
             {

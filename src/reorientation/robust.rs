@@ -6,6 +6,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::accuracy::Accuracy;
+use super::derivatives::Timing;
 use super::fitness::Reorientation;
 use super::terms::Terms;
 use crate::search::{ErrorSlopes, Piece, Term};
@@ -26,8 +27,10 @@ impl<F: Family> Reorientation<F> {
     /// What robots as they may be add to the cost.
     pub(super) fn robust_cost(&self, coefficients: &[f64]) -> f64 {
         let Some(Robust { of, weight, .. }) = &self.task().robust else { return 0.0 };
-        let error =
-            |variant: &Self| variant.error_after(variant.net_rotation(coefficients)).imag().norm();
+        // With momentum no robust plans are asked for, so the duration does not matter.
+        let error = |variant: &Self| {
+            variant.error_after(variant.net_rotation(coefficients, 0.0)).imag().norm()
+        };
         let errors: Vec<f64> = self.variants().par_iter().map(error).collect();
         let together = match of {
             RobustOf::Mean => errors.iter().sum::<f64>() / errors.len() as f64,
@@ -40,7 +43,8 @@ impl<F: Family> Reorientation<F> {
     pub(super) fn robust_term(&self, coefficients: &[f64]) -> Option<Term> {
         let Robust { of, weight, .. } = self.task().robust.as_ref()?;
         let errors = self.variants().par_iter().enumerate().map(|(i, variant)| {
-            let ErrorSlopes { value, slopes } = variant.error_slopes(coefficients);
+            let ErrorSlopes { value, slopes } =
+                variant.error_slopes(coefficients, &Timing::default());
             let size = value.norm();
             // At an error of nothing a subgradient is nothing.
             let direction = if size > 0.0 { value / size } else { value };

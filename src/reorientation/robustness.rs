@@ -27,13 +27,14 @@ impl Robustness {
     pub fn of(
         problem: &dyn AnyReorientation,
         coefficients: &[f64],
+        duration: f64,
     ) -> Result<Option<Self>, RobotError> {
         let task = problem.task();
         let Some(uncertainty) = &task.uncertainty else { return Ok(None) };
         let plain = Task { path: PathLimits::default(), ..(**task).clone() };
         let error = |varied: Task| {
             let varied = problem.spec().over(Arc::new(varied), problem.accuracy());
-            varied.error(coefficients)
+            varied.error(coefficients, duration)
         };
         let drawn = uncertainty.draw(&plain)?;
         let mut residuals: Vec<f64> =

@@ -62,6 +62,16 @@ impl<F: Family> Reorientation<F> {
                 limits.list.push(limit);
             }
         });
+        if task.least_duration > 0.0 {
+            limits.time = limits.time.max(task.least_duration);
+            limits.list.push(LinearLimit {
+                id: Some(u32::MAX),
+                power: 1,
+                value: task.least_duration,
+                first: 0,
+                slopes: [0.0; LinearLimit::MOST],
+            });
+        }
         limits
     }
 }
@@ -111,7 +121,7 @@ impl<F: Family> Timed for Formulated<F> {
     }
 
     fn error(&self, x: &[f64]) -> Result<ErrorSlopes, Failure> {
-        Ok(self.task().error_slopes(x))
+        Ok(self.task().error_slopes(x, &self.task().timing(x)))
     }
 
     fn bent(&self, x: &[f64]) -> Result<Bent, Failure> {
@@ -120,11 +130,14 @@ impl<F: Family> Timed for Formulated<F> {
 
     /// Along the first sines of every joint's variables: rougher directions are held still by the limits.
     fn bends(&self, x: &[f64]) -> Result<Vec<Bend>, Failure> {
-        let here = self.task().rough_error_slopes(x).slopes;
+        let rough = |x: &[f64]| {
+            let timing = self.task().timing(x);
+            self.task().rough_error_slopes(x, &timing).slopes
+        };
+        let here = rough(x);
         let along = |direction: DVector<f64>| {
             let there = DVector::from_column_slice(x) + &direction * DIFFERENCE;
-            let change =
-                (self.task().rough_error_slopes(there.as_slice()).slopes - &here) / DIFFERENCE;
+            let change = (rough(there.as_slice()) - &here) / DIFFERENCE;
             Bend { direction, change }
         };
         Ok(smooth_directions(self.task().family()).map(along).collect())

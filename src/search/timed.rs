@@ -238,6 +238,15 @@ impl LinearLimits {
         Self::most(self.list.iter().filter(|limit| limit.power == 0))
     }
 
+    /// A subgradient of the time, by so many variables.
+    pub fn time_slopes(&self, variables: usize) -> DVector<f64> {
+        let mut slopes = DVector::zeros(variables);
+        if let Some(limit) = self.longest() {
+            limit.add_slopes(1.0, &mut slopes);
+        }
+        slopes
+    }
+
     fn most<'a>(limits: impl Iterator<Item = &'a LinearLimit>) -> Option<&'a LinearLimit> {
         limits.reduce(
             |most, limit| {

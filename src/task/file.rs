@@ -17,7 +17,7 @@ use super::tables::{
 use super::uncertainty::{Robust, RobustTable, UncertaintyTable};
 use super::way::Way;
 use super::{PoseTable, Posture, PostureParts, Task, ToolGoal};
-use crate::input::{Document, Fraction, InputError, NonNegative, Positive, nearest};
+use crate::input::{Document, Finite, Fraction, InputError, NonNegative, Positive, nearest};
 use crate::robot::{BaseTable, Follows, Locked, Outfit, PayloadTable, Robot, RobotFile};
 use crate::trajectory::Limits;
 
@@ -45,8 +45,8 @@ pub struct TaskTable {
     pub(super) payload: Option<Spanned<PayloadTable>>,
     pub(super) start: PostureTable,
     pub(super) goal: PostureTable,
-    limits: LimitsTable,
-    weights: WeightsTable,
+    pub(super) limits: LimitsTable,
+    pub(super) weights: WeightsTable,
     #[serde(skip_serializing_if = "KeepOut::is_empty")]
     pub(super) keep_out: KeepOut,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -57,6 +57,8 @@ pub struct TaskTable {
     pub(super) uncertainty: Option<UncertaintyTable>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) robust: Option<Spanned<RobustTable>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) angular_momentum: Option<Spanned<[Finite; 3]>>,
     /// Limits on rate, acceleration and jerk that a sweep states.
     #[serde(skip)]
     swept: [bool; 3],
@@ -78,6 +80,7 @@ impl From<StatedTable> for TaskTable {
             cycles,
             uncertainty,
             robust,
+            angular_momentum,
         } = stated;
         let robot = robot.unwrap_or_else(|| Spanned::new(0..0, PAPERS_ROBOT.to_owned()));
         let swept = [false; 3];
@@ -96,6 +99,7 @@ impl From<StatedTable> for TaskTable {
             cycles,
             uncertainty,
             robust,
+            angular_momentum,
             swept,
         }
         .filled()
@@ -325,11 +329,14 @@ impl TaskTable {
         }
         let start = reader.posture(&self.start)?;
         let (goal, tool) = self.goal(&reader, &start, &limits)?;
+        let momentum = self.momentum(&start, &robot, document)?;
         let mut task = Task {
             start,
             goal,
             tool,
             limits: Limits(limits),
+            momentum,
+            least_duration: self.limits.least_duration_s.as_ref().map_or(0.0, |s| s.get_ref().0),
             base_weight: weight,
             goal_tolerance: tolerance.to_radians(),
             path: way.build()?,
@@ -348,6 +355,7 @@ impl TaskTable {
         if let Some(least) = least.or((!solids.is_empty()).then_some(0.0)) {
             task.path.clearance = Some(ClearanceLimit::new(&task.robot, solids, least));
         }
+        self.check_drifting(&task, document)?;
         let (task, impossible) = self.branched(task, document)?;
         match impossible {
             None => Ok(task),

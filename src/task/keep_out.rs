@@ -29,6 +29,11 @@ impl KeepOut {
         self.0.is_empty()
     }
 
+    /// Whether anything of it stands in inertial axes.
+    pub(super) fn is_inertial(&self) -> bool {
+        self.0.iter().any(|(_, table)| matches!(table.frame, Frame::Inertial))
+    }
+
     /// The solids, where inertial axes have their origin there from the system's centre of mass \[m\].
     pub(super) fn solids(&self, origin: Vector3<f64>) -> Vec<Solid> {
         let of_one = |(name, table): &(String, SolidTable)| {

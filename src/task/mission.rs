@@ -97,7 +97,7 @@ pub struct Leg {
 
 impl TaskTable {
     /// Whether it takes several motions, and if so where the file says so.
-    fn several(&self) -> Option<(&'static str, Range<usize>)> {
+    pub(super) fn several(&self) -> Option<(&'static str, Range<usize>)> {
         let tool = self.goal.tool.as_ref();
         let straight = tool.filter(|tool| tool.get_ref().straights().iter().any(Option::is_some));
         let retreat = self.start.retreat_m.as_ref();

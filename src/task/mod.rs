@@ -1,6 +1,7 @@
 //! What is to be done: from where to where, within which limits, weighed how.
 
 mod cones;
+mod drift;
 mod file;
 mod frame;
 mod joints;
@@ -21,8 +22,10 @@ use nalgebra::{UnitQuaternion, Vector3};
 #[cfg(feature = "harness")]
 use serde_json::{Value, json};
 
+use crate::attitude::Drift;
 use crate::robot::Robot;
 use crate::trajectory::{Limits, SinePolynomial, Spline};
+use crate::vec3::Vec3;
 pub use file::TaskTable;
 pub use frame::Frame;
 pub(crate) use mission::end_of;
@@ -48,6 +51,11 @@ pub struct Task {
     pub tool: Option<ToolGoal>,
     /// What each joint may do.
     pub limits: Limits,
+    /// Total angular momentum about the system's centre of mass, inertial axes \[N·m·s\], where it is not zero. Then where the
+    /// base ends follows from the duration, too.
+    pub momentum: Option<Vector3<f64>>,
+    /// The motion is to last no shorter \[s\].
+    pub least_duration: f64,
     /// `K_b`, the weight of the base's attitude; time weighs `K_t = 1 − K_b`.
     pub base_weight: f64,
     /// How far from its goal the base may end where the goal is a demand \[rad\]; the cost does not depend on it.
@@ -64,7 +72,7 @@ impl Task {
     /// All that a motion's cost follows from, as JSON: [`Robot::identity`], `start` and `goal` with `joints`
     /// \[rad or m\] and `base`, a quaternion `w, x, y, z` from base axes to inertial axes, `limits` on rate,
     /// acceleration and jerk per joint, `base_weight` and, where anything is asked for on the way, `path`, or of robots as they may be,
-    /// `robust`.
+    /// `robust`; `momentum` and `least_duration` where they are not zero.
     #[cfg(feature = "harness")]
     pub(crate) fn identity(&self) -> Value {
         let mut identity = json!({
@@ -79,6 +87,12 @@ impl Task {
         }
         if let Some(robust) = &self.robust {
             identity["robust"] = robust.identity();
+        }
+        if let Some(momentum) = &self.momentum {
+            identity["momentum"] = json!(momentum.as_slice());
+        }
+        if self.least_duration > 0.0 {
+            identity["least_duration"] = json!(self.least_duration);
         }
         identity
     }
@@ -111,10 +125,22 @@ impl Task {
         Self { goal, ..self.clone() }
     }
 
+    /// What turns the base beside the joints, over so many seconds from an attitude on; nothing without momentum.
+    pub(crate) fn drift(&self, start: UnitQuaternion<f64>, duration: f64) -> Option<Drift> {
+        self.momentum.map(|momentum| Drift { momentum, start, duration })
+    }
+
+    /// The total angular momentum along base axes of this attitude \[N·m·s\].
+    pub(crate) fn momentum_at(&self, attitude: &UnitQuaternion<f64>) -> Vec3<f64> {
+        self.momentum.map_or(Vec3::zero(), |momentum| Vec3::of(&(attitude.inverse() * momentum)))
+    }
+
     /// What is left to do at the start, if it is nothing: the angle \[rad\], within the goal's tolerance, by which the base is off.
     pub fn already_there(&self) -> Option<f64> {
         let residual = self.start.base.angle_to(&self.goal.base);
-        let is_there = self.start.joints == self.goal.joints && residual <= self.goal_tolerance;
+        let is_there = self.start.joints == self.goal.joints
+            && residual <= self.goal_tolerance
+            && self.momentum.is_none();
         is_there.then_some(residual)
     }
 

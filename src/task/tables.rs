@@ -37,6 +37,7 @@ pub(super) struct StatedTable {
     pub(super) cycles: Option<Spanned<Cycles>>,
     pub(super) uncertainty: Option<UncertaintyTable>,
     pub(super) robust: Option<Spanned<RobustTable>>,
+    pub(super) angular_momentum: Option<Spanned<[Finite; 3]>>,
 }
 
 /// How many swings a turn of the base is divided among.
@@ -62,6 +63,9 @@ pub(super) struct PostureTable {
     /// How far the tool first goes straight back \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) retreat_m: Option<Spanned<Positive>>,
+    /// The base's angular velocity, base axes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) base_rate_deg_s: Option<Spanned<[Finite; 3]>>,
     /// Whether a pose states the joints' positions or the tool's place, and the base's attitude.
     #[serde(skip)]
     pub(super) posed: [bool; 2],
@@ -98,6 +102,8 @@ pub(super) struct LimitsTable {
     pub(super) torque_n_m: Option<Spanned<Limit>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) clearance_m: Option<Spanned<NonNegative>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) least_duration_s: Option<Spanned<Positive>>,
 }
 
 /// Both keys of a limit, in degrees and by joint.
@@ -194,6 +200,7 @@ impl PostureTable {
             },
             tolerance_deg: self.tolerance_deg.clone(),
             retreat_m: self.retreat_m.clone(),
+            base_rate_deg_s: self.base_rate_deg_s.clone(),
             posed: self.posed,
         }
     }
@@ -292,24 +299,22 @@ impl LimitsTable {
 impl PostureTable {
     /// The same posture but for some parts.
     pub(super) fn with(&self, parts: &PostureParts) -> Self {
-        let Self { joints_deg, joints, tool, base_zyx_deg, tolerance_deg, retreat_m, posed } =
-            self.clone();
         let base = parts.base_zyx_deg.map(|base| Spanned::new(0..0, base));
         let has_joints =
             parts.joints_deg.is_some() || parts.joints.is_some() || parts.tool.is_some();
+        let own = self.clone();
         let (joints_deg, joints, tool) = if has_joints {
             (parts.joints_deg.clone(), parts.joints.clone(), parts.tool.clone())
         } else {
-            (joints_deg, joints, tool)
+            (own.joints_deg, own.joints, own.tool)
         };
         Self {
             joints_deg,
             joints,
             tool,
-            posed: [posed[0] || has_joints, posed[1] || base.is_some()],
-            base_zyx_deg: base.or(base_zyx_deg),
-            tolerance_deg,
-            retreat_m,
+            posed: [own.posed[0] || has_joints, own.posed[1] || base.is_some()],
+            base_zyx_deg: base.or(own.base_zyx_deg),
+            ..own
         }
     }
 }

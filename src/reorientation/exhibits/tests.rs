@@ -293,7 +293,12 @@ fn motion() -> Motion {
             .collect(),
     };
     let base = |t: &f64| UnitQuaternion::from_euler_angles(0.1 * t.sin(), 0.03 * t, -0.02 * t);
-    Motion { joints: (0..7).map(joint).collect(), base: time.iter().map(base).collect(), time }
+    Motion {
+        joints: (0..7).map(joint).collect(),
+        base: time.iter().map(base).collect(),
+        time,
+        ..Motion::default()
+    }
 }
 
 /// Every chart by name.

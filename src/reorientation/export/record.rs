@@ -126,7 +126,9 @@ impl<'a> Record<'a> {
                 motion.joints.iter().map(|joint| joint.derivatives[i][order]).collect()
             });
             let (positions, rates, accelerations) = (&*positions, &*rates, &*accelerations);
-            dynamics.evaluate(robot, State { positions, rates, accelerations });
+            let angular_momentum = Vec3::of(&(attitude.inverse() * motion.momentum));
+            let state = State { positions, rates, accelerations, angular_momentum };
+            dynamics.evaluate(robot, state);
             let place = Posture::with(&branches, robot, positions, *attitude).position;
             let from = *start.get_or_insert(place);
             if i < there {

@@ -6,6 +6,7 @@ use crate::dynamics::{Dynamics, Quantity, State};
 use crate::lanes::{LaneWork, Lanes, MOST};
 use crate::so3::Quat;
 use crate::task::Task;
+use crate::vec3::Vec3;
 
 /// The heights of all that is watched, at every place.
 pub(in crate::reorientation) struct Heights<'a> {
@@ -63,7 +64,17 @@ impl LaneWork for Heights<'_> {
             }
             let [positions, rates, accelerations] = &states;
             if moves {
-                dynamics.evaluate(robot, State { positions, rates, accelerations });
+                let component = |of: fn(Vec3<f64>) -> f64| {
+                    let mut lanes = [0.0; MOST];
+                    for (lane, number) in lanes.iter_mut().enumerate().take(T::COUNT) {
+                        *number = of(place(lane).momentum);
+                    }
+                    T::load(&lanes)
+                };
+                let angular_momentum =
+                    Vec3::new(component(|h| h.x), component(|h| h.y), component(|h| h.z));
+                let state = State { positions, rates, accelerations, angular_momentum };
+                dynamics.evaluate(robot, state);
             }
             if let Some(bodies) = bodies {
                 let mut attitudes = [Quat::identity(); MOST];

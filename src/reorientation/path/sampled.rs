@@ -11,6 +11,7 @@ use crate::lanes::{LaneWork, Lanes, Width};
 use crate::momentum::{Arm, JointState};
 use crate::task::Task;
 use crate::trajectory::{Curve, Family};
+use crate::vec3::Vec3;
 
 /// How near to its place a peak is found, as a share of the way between two samples: its height is right to the square of that.
 const NEAR: f64 = 1e-6;
@@ -265,5 +266,6 @@ fn place<C: Curve>(curves: &[C], tau: f64, attitude: UnitQuaternion<f64>, orders
         all.for_each(|(all, own)| all.push(own));
     }
     let [positions, rates, accelerations] = derivatives;
-    Place { tau, positions, rates, accelerations, attitude }
+    // Nothing that follows the momentum is limited where there is any.
+    Place { tau, positions, rates, accelerations, attitude, momentum: Vec3::zero() }
 }

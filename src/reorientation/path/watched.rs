@@ -4,8 +4,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::clearance::Scene;
 use crate::dynamics::{self, Dynamics, Quantity, State};
-use crate::momentum::base_twist;
+use crate::momentum::drifting_twist;
 use crate::task::{Task, TurnFrom};
+use crate::vec3::Vec3;
 
 /// What is watched along a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,21 +60,25 @@ pub(in crate::reorientation) struct Place {
     pub(super) rates: Vec<f64>,
     pub(super) accelerations: Vec<f64>,
     pub(super) attitude: UnitQuaternion<f64>,
+    /// Total angular momentum, base axes, times the duration where derivatives are by `τ`.
+    pub(super) momentum: Vec3<f64>,
 }
 
 impl Place {
-    /// A time with the joints' positions, rates and accelerations, by time or by `τ`, and the base's attitude.
+    /// A time with the joints' positions, rates and accelerations, the base's attitude and the total angular momentum along base
+    /// axes.
     pub(in crate::reorientation) fn new(
         tau: f64,
         [positions, rates, accelerations]: [Vec<f64>; 3],
         attitude: UnitQuaternion<f64>,
+        momentum: Vec3<f64>,
     ) -> Self {
-        Self { tau, positions, rates, accelerations, attitude }
+        Self { tau, positions, rates, accelerations, attitude, momentum }
     }
 
     fn state(&self) -> State<'_, f64> {
-        let Self { positions, rates, accelerations, .. } = self;
-        State { positions, rates, accelerations }
+        let Self { positions, rates, accelerations, momentum, .. } = self;
+        State { positions, rates, accelerations, angular_momentum: *momentum }
     }
 
     fn quantity(&self, task: &Task, quantity: Quantity) -> f64 {
@@ -87,7 +92,8 @@ impl Place {
 
     /// The base's angular velocity by `τ`, base axes.
     pub(super) fn base_rate(&self, task: &Task) -> Vector3<f64> {
-        Vector3::from(base_twist(&task.robot, &self.positions, &self.rates).angular)
+        let Self { positions, rates, momentum, .. } = self;
+        Vector3::from(drifting_twist(&task.robot, positions, rates, *momentum).angular)
     }
 }
 

@@ -223,7 +223,7 @@ impl PlannedMission {
                 Some(whole) => whole.go_on(next),
             }
         }
-        whole.unwrap_or_else(|| Motion { time: Vec::new(), joints: Vec::new(), base: Vec::new() })
+        whole.unwrap_or_default()
     }
 
     /// All motions as one for other tools. Each is sampled from its own start to its end; without a sampling, as suits it.
@@ -234,7 +234,7 @@ impl PlannedMission {
         };
         let mut legs = self.legs.iter();
         let Some(first) = legs.next() else {
-            let nothing = Motion { time: Vec::new(), joints: Vec::new(), base: Vec::new() };
+            let nothing = Motion::default();
             return Ok(Record::new(&self.ends.robot, nothing));
         };
         let mut record = Record::new(&first.motion.task().robot, sampled(first));

@@ -145,7 +145,7 @@ impl Planned {
 
     /// What becomes of it where the robot is not quite what its file says, if the task states how far that may be.
     pub fn robustness(&self) -> Option<Robustness> {
-        Robustness::of(&*self.problem, &self.coefficients).ok().flatten()
+        Robustness::of(&*self.problem, &self.coefficients, self.assessment.duration).ok().flatten()
     }
 
     /// Whether it reaches its goal, ends nearer to it or, where both are within its tolerance, breaks limits by less.

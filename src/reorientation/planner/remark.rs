@@ -83,7 +83,7 @@ impl Planned {
             Reach::NotFound
                 if family == FamilyName::SinePolynomial
                     && self.spent.evaluations < budget
-                    && self.problem.is_held_by_time(&self.coefficients) =>
+                    && self.problem.is_held_by_time(&self.coefficients, self.assessment.duration) =>
             {
                 format!(
                     "because reaching it costs more time than its weight is worth. Raise `weights.base` above {}, or search \

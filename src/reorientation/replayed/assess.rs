@@ -54,8 +54,8 @@ pub struct Replayed<'a> {
     pub base_turn: Peak,
     /// Its largest angular speed \[rad/s\].
     pub base_rate: Peak,
-    /// The largest linear \[N·s\] and angular momentum \[N·m·s\] of base and arm together, a check: it should be zero but for
-    /// rounding.
+    /// The largest linear \[N·s\] and angular momentum \[N·m·s\] of base and arm together, beside the task's own: a check, which
+    /// should be zero but for rounding.
     pub momentum: [f64; 2],
     /// How far each joint goes.
     pub extents: Vec<Extent>,
@@ -122,12 +122,12 @@ impl<'a> Replayed<'a> {
         let others = PointReading::ALL.into_iter().filter(|other| *other != reading);
         let others = others.filter_map(|other| {
             let path = other.path(points)?;
-            Some(ReadPath::of(task, other, &path, &BasePath::of(&task.robot, &path)))
+            Some(ReadPath::of(task, other, &path, &BasePath::of(task, &path)))
         });
         let others = others.collect();
         let path = points.played();
-        let base = BasePath::of(&task.robot, &path);
-        let Seen { turn, rate, momentum } = base.look(&task.robot, &path);
+        let base = BasePath::of(task, &path);
+        let Seen { turn, rate, momentum } = base.look(task, &path);
         let played = ReadPath::of(task, reading, &path, &base);
         let extents = path.extents();
         let mut faults = faults(task, &path, played.residual, &played.peaks, &extents);
@@ -196,7 +196,7 @@ fn sample(task: &Task, points: &Points, base: &BasePath, sampling: Sampling) -> 
         }
     });
     let joints = joints.collect();
-    let base = base.at(&task.robot, &path, &time);
+    let base = base.at(task, &path, &time);
     let base = base.into_iter().map(|turn| task.start.base * turn).collect();
-    Motion { time, joints, base }
+    Motion { time, joints, base, momentum: task.momentum.unwrap_or_default() }
 }

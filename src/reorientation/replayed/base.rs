@@ -4,8 +4,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
 
 use crate::attitude::increments;
-use crate::momentum::{base_twist, total_momentum};
-use crate::robot::Robot;
+use crate::momentum::{drifting_twist, total_momentum};
+use crate::task::Task;
 use crate::trajectory::{Peak, PointPath};
 
 /// The widest first step: no joint moves further in one \[rad or m\].
@@ -39,7 +39,7 @@ pub(super) struct Seen {
     pub(super) turn: Peak,
     /// Largest angular speed \[rad/s\].
     pub(super) rate: Peak,
-    /// Largest linear \[N·s\] and angular \[N·m·s\] momentum of the whole, which should be none.
+    /// Largest linear \[N·s\] and angular \[N·m·s\] momentum of the whole beside the task's own, which should be none.
     pub(super) momentum: [f64; 2],
 }
 
@@ -52,11 +52,23 @@ struct Turn {
 }
 
 impl BasePath {
-    pub(super) fn of(robot: &Robot, path: &PointPath<'_>) -> Self {
+    pub(super) fn of(task: &Task, path: &PointPath<'_>) -> Self {
         let segments = path.segments();
         let most = (MOST_STEPS / segments).max(2);
-        let turns: Vec<Turn> =
-            (0..segments).into_par_iter().map(|segment| turn(robot, path, segment, most)).collect();
+        let turn = |start, segment| turn(task, path, start, segment, most);
+        let turns: Vec<Turn> = if task.momentum.is_none() {
+            let start = task.start.base;
+            (0..segments).into_par_iter().map(|segment| turn(start, segment)).collect()
+        } else {
+            // With momentum a segment's turn follows from where it starts.
+            let mut start = task.start.base;
+            let next = |segment| {
+                let turn = turn(start, segment);
+                start *= turn.fine;
+                turn
+            };
+            (0..segments).map(next).collect()
+        };
         let [mut fine, mut coarse] = [UnitQuaternion::identity(); 2];
         let mut all = Vec::with_capacity(segments + 1);
         all.push(fine);
@@ -81,7 +93,7 @@ impl BasePath {
     /// The attitudes, relative to that at the first point, at these times since then \[s\], which grow.
     pub(super) fn at(
         &self,
-        robot: &Robot,
+        task: &Task,
         path: &PointPath<'_>,
         times: &[f64],
     ) -> Vec<UnitQuaternion<f64>> {
@@ -90,13 +102,15 @@ impl BasePath {
             let (segment, share) = path.place(time);
             let steps = first_steps(path, segment).saturating_mul(4).min(most);
             let part = |share: f64| {
+                let drift =
+                    task.drift(task.start.base * self.turns[segment], share * path.width(segment));
                 let write = |place, positions: &mut [f64], rates: &mut [f64]| {
                     path.write(segment, place * share, positions, rates);
                     for rate in rates {
                         *rate *= share;
                     }
                 };
-                product(increments(robot, steps, write))
+                product(increments(&task.robot, steps, drift, write))
             };
             self.turns[segment] * if share > 0.0 { part(share) } else { UnitQuaternion::identity() }
         };
@@ -104,7 +118,8 @@ impl BasePath {
     }
 
     /// Looks at the base on the way.
-    pub(super) fn look(&self, robot: &Robot, path: &PointPath<'_>) -> Seen {
+    pub(super) fn look(&self, task: &Task, path: &PointPath<'_>) -> Seen {
+        let robot = &task.robot;
         let duration = path.points().duration();
         let look = |segment: usize| {
             let start = path.points().times()[segment];
@@ -115,7 +130,8 @@ impl BasePath {
             let write = |share, positions: &mut [f64], rates: &mut [f64]| {
                 path.write(segment, share, positions, rates);
             };
-            let mut steps = increments(robot, looks, write);
+            let drift = task.drift(task.start.base * attitude, width);
+            let mut steps = increments(robot, looks, drift, write);
             let mut positions = vec![0.0; path.points().joints()];
             let mut rates = positions.clone();
             for i in 0..=looks {
@@ -125,10 +141,11 @@ impl BasePath {
                 for rate in &mut rates {
                     *rate /= width;
                 }
-                let base = base_twist(robot, &positions, &rates);
+                let own = task.momentum_at(&(task.start.base * attitude));
+                let base = drifting_twist(robot, &positions, &rates, own);
                 let (linear, angular) = total_momentum(robot, &positions, &rates, &base);
-                let [rate, linear, angular] =
-                    [base.angular, linear, angular].map(|vector| Vector3::from(vector).norm());
+                let [rate, linear, angular] = [base.angular, linear, angular - own]
+                    .map(|vector| Vector3::from(vector).norm());
                 let turn =
                     if i == looks { self.turns[segment + 1].angle() } else { attitude.angle() };
                 seen = seen.or(&Seen {
@@ -163,12 +180,19 @@ fn first_steps(path: &PointPath<'_>, segment: usize) -> usize {
     (path.reach(segment) / FIRST_STEP).ceil().max(1.0) as usize
 }
 
-fn turn(robot: &Robot, path: &PointPath<'_>, segment: usize, most: usize) -> Turn {
+fn turn(
+    task: &Task,
+    path: &PointPath<'_>,
+    start: UnitQuaternion<f64>,
+    segment: usize,
+    most: usize,
+) -> Turn {
+    let drift = task.drift(start, path.width(segment));
     let with = |steps: usize| {
         let write = |share, positions: &mut [f64], rates: &mut [f64]| {
             path.write(segment, share, positions, rates);
         };
-        product(increments(robot, steps, write))
+        product(increments(&task.robot, steps, drift, write))
     };
     let first = first_steps(path, segment);
     let is_followed = first <= most / 2;
