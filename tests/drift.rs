@@ -211,7 +211,10 @@ fn momentum_is_read_in_both_ways() {
         ("[task]\nangular_momentum = [0, 0, nan]\n", "finite"),
         ("[task]\nangular_momentum = [0, 0]\n", "3"),
         ("[task]\ngoal.base_rate_deg_s = [0, 0, 1]\n", "for the start alone"),
-        ("[task]\nangular_momentum = [1, 0, 0]\nstart.base_rate_deg_s = [1, 0, 0]\n", "expected one of them"),
+        (
+            "[task]\nangular_momentum = [1, 0, 0]\nstart.base_rate_deg_s = [1, 0, 0]\n",
+            "expected one of them",
+        ),
         ("[task]\nangular_momentum = [1, 0, 0]\nlimits.base_turn_deg = 20\n", "base_turn_deg"),
         ("[task]\nangular_momentum = [1, 0, 0]\ncycles = 2\n", "cycles"),
         ("[task]\nlimits.least_duration_s = 0\n", "above zero"),

@@ -265,6 +265,12 @@ impl fmt::Display for Told<'_> {
                 "                 {one} and {other} {state} {distance:.4} m (at {at:.4} s){source}"
             ));
         }
+        if let Some(rate) = excursions.end_rate {
+            lines.push(format!(
+                "  drift          at the end the base goes on turning at {:.4} °/s",
+                rate.norm().to_degrees()
+            ));
+        }
         if !excursions.used.is_empty() {
             let share = |Used { limit, share, .. }: &Used| {
                 format!("{} {:.1} %", limit.name().replace('_', " "), 100.0 * share)

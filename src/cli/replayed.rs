@@ -85,10 +85,19 @@ impl fmt::Display for Trajectory<'_> {
             rate.tau * duration
         )?;
         let [linear, angular] = replayed.momentum;
+        let expected = if replayed.task().momentum.is_some() {
+            "beside the task's own"
+        } else {
+            "expected zero"
+        };
         writeln!(
             f,
-            "  check          the momentum of all is at most {linear:.1e} N·s and {angular:.1e} N·m·s, expected zero"
+            "  check          the momentum of all is at most {linear:.1e} N·s and {angular:.1e} N·m·s, {expected}"
         )?;
+        if let Some(rate) = replayed.excursions.end_rate {
+            let rate = rate.norm().to_degrees();
+            writeln!(f, "  drift          at the end the base goes on turning at {rate:.4} °/s")?;
+        }
         for other in &replayed.others {
             write_other(f, other, replayed)?;
         }

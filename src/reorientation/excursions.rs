@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::motion::Motion;
@@ -33,6 +34,8 @@ pub struct Excursions {
     pub used: Vec<Used>,
     /// How the tool comes to its goal, where the task states one.
     pub tool: Option<ToolEnd>,
+    /// Angular velocity that the base keeps at the end, base axes \[rad/s\], of a robot that has angular momentum.
+    pub end_rate: Option<Vector3<f64>>,
 }
 
 /// How the tool comes to its goal.
@@ -168,6 +171,7 @@ impl Excursions {
             positions: positions.collect(),
             used: Vec::new(),
             tool: tool_end(task, motion),
+            end_rate: end_rate(task, &places),
         };
         found.used = found.shares(task, of);
         found
@@ -226,6 +230,10 @@ impl Excursions {
         });
         used.collect()
     }
+}
+
+fn end_rate(task: &Task, places: &[Place]) -> Option<Vector3<f64>> {
+    task.momentum.and_then(|_| Some(places.last()?.base_rate(task)))
 }
 
 fn tool_end(task: &Task, motion: &Motion) -> Option<ToolEnd> {

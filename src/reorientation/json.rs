@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::any::AnyReorientation;
@@ -104,6 +105,27 @@ pub(super) struct WayJson {
     /// Of tasks that state where the tool is to be.
     #[serde(skip_serializing_if = "Option::is_none")]
     tool: Option<ToolJson>,
+    /// Of robots that have angular momentum.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    drift: Option<DriftJson>,
+}
+
+/// What turns the base beside the joints.
+#[derive(Debug, Serialize)]
+struct DriftJson {
+    /// Inertial axes \[N·m·s\].
+    angular_momentum: [f64; 3],
+    /// What the base keeps at the end, base axes.
+    end_base_rate_deg_s: [f64; 3],
+}
+
+impl DriftJson {
+    fn new(momentum: Vector3<f64>, end_rate: Vector3<f64>) -> Self {
+        Self {
+            angular_momentum: momentum.into(),
+            end_base_rate_deg_s: end_rate.map(f64::to_degrees).into(),
+        }
+    }
 }
 
 /// How the tool comes to its goal.
@@ -161,6 +183,7 @@ impl WayJson {
         });
         let of_joints = of_joints.into_iter().chain([("range", Some(ranges))]);
         let tool = task.tool.as_ref().zip(excursions.tool.as_ref());
+        let drift = task.momentum.zip(excursions.end_rate);
         let used = |used: &Used| (used.limit.name(), used.share.is_finite().then_some(used.share));
         Self {
             largest_tool_speed_m_s: excursions.tool_speed,
@@ -172,6 +195,7 @@ impl WayJson {
             limits_used: of_joints.chain(excursions.used.iter().map(used)).collect(),
             not_checked: NOT_CHECKED,
             tool: tool.map(|(goal, end)| ToolJson::new(goal, end, task)),
+            drift: drift.map(|(momentum, rate)| DriftJson::new(momentum, rate)),
         }
     }
 }

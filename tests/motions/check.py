@@ -130,7 +130,11 @@ def check_physics(play):
     start = None
     times = range(0, len(motion.time), 10)
     for i in times:
-        play.place(model, data, motion.attitude[i], np.zeros(3), motion.position[i], motion.rate[i])
+        play.place(model, data, motion.attitude[i], np.zeros(3), np.zeros(3), motion.position[i], motion.rate[i])
+        # The base's twist with which the whole has no momentum.
+        of_joints = -play.times_inertia(model, data, data.qvel)[:6]
+        data.qvel[:6] += np.linalg.solve(play.base_inertia(model, data), of_joints)
+        mujoco.mj_forward(model, data)
         found["torque"].append(play.torques(model, data, motion.acceleration[i]))
         found["base_rate"].append(data.qvel[3:6].copy())
         # What stays where it is, is the centre of all masses.

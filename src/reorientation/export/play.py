@@ -92,12 +92,12 @@ def torques(model, data, wanted):
     return (times_inertia(model, data, acceleration) + data.qfrc_bias)[6:]
 
 
-def place(model, data, attitude, base_position, position, rate):
-    """Puts the robot there; the base moves as it does without momentum."""
+def place(model, data, attitude, base_position, base_rate, position, rate):
+    """Puts the robot there; its centre of mass stands still."""
     data.qpos[:] = np.concatenate([base_position, attitude, position])
-    data.qvel[:] = np.concatenate([np.zeros(6), rate])
+    data.qvel[:] = np.concatenate([np.zeros(3), base_rate, rate])
     mujoco.mj_forward(model, data)
-    data.qvel[:6] = np.linalg.solve(base_inertia(model, data), -times_inertia(model, data, data.qvel)[:6])
+    data.qvel[:3] = -times_inertia(model, data, data.qvel)[:3] / base_inertia(model, data)[0, 0]
     mujoco.mj_forward(model, data)
 
 
@@ -105,7 +105,7 @@ def play(model, motion, steps, each=lambda data: None):
     """The state at the end, and the largest error of a joint's position on the way."""
     data = mujoco.MjData(model)
     model.opt.timestep = motion.duration / steps
-    place(model, data, motion.attitude[0], motion.base_position[0], motion.position[0], motion.rate[0])
+    place(model, data, motion.attitude[0], motion.base_position[0], motion.base_rate[0], motion.position[0], motion.rate[0])
     frequency = STIFFNESS / motion.duration
 
     def drive(model, data):

@@ -91,7 +91,7 @@ impl Place {
     }
 
     /// The base's angular velocity by `τ`, base axes.
-    pub(super) fn base_rate(&self, task: &Task) -> Vector3<f64> {
+    pub(in crate::reorientation) fn base_rate(&self, task: &Task) -> Vector3<f64> {
         let Self { positions, rates, momentum, .. } = self;
         Vector3::from(drifting_twist(&task.robot, positions, rates, *momentum).angular)
     }

@@ -1,6 +1,7 @@
 //! Plans the motion of one task: what is searched, from how many starts, and once more where the goal was missed.
 
 mod branches;
+mod drifting;
 mod mission;
 mod planned;
 mod remark;
@@ -184,7 +185,7 @@ impl Planner {
                 let tasks = tool.branches.iter().map(|joints| self.task().ending_with(joints));
                 Ok(self.plan_one_of(tasks.collect(), search)?.1)
             }
-            _ => self.search(search),
+            _ => self.waiting(self.search(search)?, search),
         }
     }
 
