@@ -95,7 +95,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("robots", nargs="*")
     parser.add_argument("--poses", type=int, default=100)
-    asked = parser.parse_args()
+    asked = parser.parse_intermixed_args()
     with tempfile.TemporaryDirectory() as folder:
         good = [check(asked.program, name, asked.poses, folder) for name in asked.robots or ROBOTS]
     return not all(good)

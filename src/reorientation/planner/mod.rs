@@ -1,6 +1,7 @@
 //! Plans the motion of one task: what is searched, from how many starts, and once more where the goal was missed.
 
 mod branches;
+mod closing;
 mod drifting;
 mod mission;
 mod planned;
@@ -332,7 +333,7 @@ impl Search<'_> {
                 None => PlanError::NoMotion,
             });
         };
-        let (coefficients, assessment) = problem.certify(&best.x);
+        let (coefficients, assessment) = closing::closed(problem, &best.x);
         if !assessment.cost.is_finite() || !assessment.duration.is_finite() {
             return Err(PlanError::NoMotion);
         }
