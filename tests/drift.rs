@@ -124,7 +124,7 @@ fn the_base_ends_where_an_integrator_brings_it() {
             let problem = over(drifting(name, rate), 8, 240);
             let c = path(&problem, &mut rng);
             for duration in [4.0, 30.0] {
-                let end = problem.task().start.base * problem.net_rotation(&c, duration);
+                let end = problem.task().start.base * problem.rotation_over(&c, duration);
                 let expected = integrated(&problem, &c, duration);
                 let miss = end.angle_to(&expected);
                 assert!(miss < 1e-9, "{name}, {rate:?}, {duration} s: {miss:e}");
@@ -138,8 +138,8 @@ fn steps_and_panels_and_samples_agree() {
     let problem = over(drifting("ur5e", [0.5, -1.0, 2.0]), 10, 240);
     let c = path(&problem, &mut Rng::new(3));
     let (task, family, duration) = (problem.task(), problem.family(), 12.0);
-    let net = problem.net_rotation(&c, duration);
-    let scalar = problem.with_width(Width::Scalar).net_rotation(&c, duration);
+    let net = problem.rotation_over(&c, duration);
+    let scalar = problem.with_width(Width::Scalar).rotation_over(&c, duration);
     assert!(net.angle_to(&scalar) < 1e-12);
     let drift = Drift { momentum: task.momentum.unwrap(), start: task.start.base, duration };
     let write = |tau: f64, positions: &mut [f64], rates: &mut [f64]| {
@@ -163,7 +163,7 @@ fn errors_fall_with_the_sixth_power() {
     let net = |steps: usize| {
         let problem = over(task.clone(), 5, steps);
         let c = path(&problem, &mut Rng::new(4));
-        problem.net_rotation(&c, 20.0)
+        problem.rotation_over(&c, 20.0)
     };
     let exact = net(960);
     let [coarse, fine] = [30, 60].map(|steps| net(steps).angle_to(&exact));

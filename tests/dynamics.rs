@@ -49,7 +49,7 @@ struct Values {
 impl Values {
     fn state(&self) -> State<'_, f64> {
         let Self { positions, rates, accelerations, .. } = self;
-        State { positions, rates, accelerations }
+        State { positions, rates, accelerations, angular_momentum: Vec3::zero() }
     }
 }
 
@@ -107,7 +107,7 @@ fn torques_and_speeds_are_pinocchios() {
     for (name, robot, states) in reference() {
         let mut dynamics = Dynamics::new(&robot);
         for values in states {
-            let State { positions, rates, accelerations } = values.state();
+            let State { positions, rates, accelerations, .. } = values.state();
             dynamics.evaluate(&robot, values.state());
             let near = |what: &str, ours: &[f64], theirs: &[f64]| {
                 assert_near(&format!("{what} of {name}"), ours, theirs, 1e-11);
@@ -159,7 +159,10 @@ impl LaneWork for InLanes<'_> {
             let rates = gather(|state| &state.rates);
             let accelerations = gather(|state| &state.accelerations);
             let (positions, rates, accelerations) = (&positions, &rates, &accelerations);
-            dynamics.evaluate(robot, State { positions, rates, accelerations });
+            dynamics.evaluate(
+                robot,
+                State { positions, rates, accelerations, angular_momentum: Vec3::zero() },
+            );
             for lane in 0..states.len() {
                 let value = |quantity| dynamics.get(quantity).numbers()[lane];
                 all.push(quantities(robot).into_iter().map(value).collect());
@@ -195,7 +198,11 @@ fn difference(
         let mut state = [positions.clone(), rates.clone(), accelerations.clone()];
         state[which][joint] += step;
         let [positions, rates, accelerations] = &state;
-        [Dynamics::new(robot).value(robot, quantity, State { positions, rates, accelerations })]
+        [Dynamics::new(robot).value(
+            robot,
+            quantity,
+            State { positions, rates, accelerations, angular_momentum: Vec3::zero() },
+        )]
     };
     derivative(at)[0]
 }
@@ -222,7 +229,7 @@ fn slopes_are_differences() {
                 assert_near(&format!("{quantity:?} of {name} by {which}"), ours, &theirs, 1e-9);
             }
             if let Quantity::Torque(joint) = quantity {
-                let State { positions, rates, accelerations } = values.state();
+                let State { positions, rates, accelerations, .. } = values.state();
                 let [p, r, a] = torque_slopes(&robot, positions, rates, accelerations, joint);
                 assert_eq!([&p, &r, &a], all);
             }
@@ -236,7 +243,7 @@ fn slopes_of_torques_are_pinocchios() {
     for (name, robot, states) in reference() {
         for values in &states {
             let Some(theirs) = &values.torque_by else { continue };
-            let State { positions, rates, accelerations } = values.state();
+            let State { positions, rates, accelerations, .. } = values.state();
             let joints = 0..robot.joint_count();
             let ours: Vec<[Vec<f64>; 3]> = joints
                 .map(|joint| torque_slopes(&robot, positions, rates, accelerations, joint))
@@ -364,7 +371,7 @@ fn energy(robot: &Robot, positions: &[f64], rates: &[f64]) -> f64 {
 fn power_is_the_energys_derivative() {
     for (name, robot, states) in reference() {
         for values in &states {
-            let State { positions, rates, accelerations } = values.state();
+            let State { positions, rates, accelerations, .. } = values.state();
             let [gain] = derivative(|t| {
                 let (there, rates) = moved(values, t);
                 [energy(&robot, &there, &rates)]

@@ -108,7 +108,7 @@ fn attitudes_are_pinocchios() {
             }
         };
         let robot = shipped(&name);
-        let steps = increments(&robot, 2000, write);
+        let steps = increments(&robot, 2000, None, write);
         let end = steps.fold(UnitQuaternion::identity(), |attitude, step| attitude * step);
         let [w, x, y, z] = attitude;
         let theirs = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));

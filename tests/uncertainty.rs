@@ -107,7 +107,7 @@ fn joints_that_are_off_move_the_base_as_along_a_shifted_path() {
             let problem = spline.over(Arc::new(task), Accuracy::FINE);
             let coefficients: Vec<f64> =
                 (0..problem.dimension()).map(|i| 0.1 * (i as f64).sin()).collect();
-            problem.error(&coefficients)
+            problem.error(&coefficients, 1.0)
         });
         assert!(found.angle_to(&expected) < 1e-12, "{name}");
     }
@@ -121,14 +121,14 @@ fn sensitivities_are_those_of_small_changes() {
     let problem = FamilySpec::SinePolynomial { terms: 2 }.over(task.clone(), Accuracy::FINE);
     let coefficients: Vec<f64> =
         (0..problem.dimension()).map(|i| 0.3 * (1.7 * i as f64).sin()).collect();
-    let found = Robustness::of(&*problem, &coefficients).unwrap().unwrap();
+    let found = Robustness::of(&*problem, &coefficients, 1.0).unwrap().unwrap();
     let uncertainty = task.uncertainty.as_ref().unwrap();
     assert_eq!(found.sensitivities.len(), uncertainty.unknowns(&task.robot).len());
     assert_eq!(found.residuals.len(), 256);
-    let own = problem.error(&coefficients);
+    let own = problem.error(&coefficients, 1.0);
     for (unknown, angle) in found.sensitivities.iter().take(8) {
         let varied = uncertainty.varied(&task, &[(*unknown, 1.0)]).unwrap();
-        let there = problem.spec().over(Arc::new(varied), Accuracy::FINE).error(&coefficients);
+        let there = problem.spec().over(Arc::new(varied), Accuracy::FINE).error(&coefficients, 1.0);
         let expected = own.angle_to(&there);
         assert!((angle - expected).abs() < 2e-3 * expected, "{unknown:?}: {angle} {expected}");
     }
@@ -188,7 +188,7 @@ fn robust_motions_miss_by_less() {
         let _ = scp.minimise(&mut oracle, &mut Rng::new(1));
         let best = oracle.best().unwrap().x.clone();
         let (coefficients, _) = problem.certify(&best);
-        let found = Robustness::of(problem.task(), &coefficients).unwrap().unwrap();
+        let found = Robustness::of(problem.task(), &coefficients, 1.0).unwrap().unwrap();
         (problem, best, found.quantile(1.0))
     };
     let (_, plain, plain_worst) = searched("");

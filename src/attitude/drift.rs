@@ -10,8 +10,8 @@ use std::array::from_fn;
 
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
+use super::magnus::{GAUSS, magnus, magnus_slopes};
 use super::rollout::{step_moments, step_weights};
-use super::{GAUSS, magnus, magnus_slopes};
 use crate::momentum::BaseResponse;
 use crate::so3::{self, Quat};
 use crate::vec3::{Mat3, Vec3};

@@ -4,7 +4,7 @@ use std::array::from_fn;
 
 use nalgebra::UnitQuaternion;
 
-use super::{GAUSS, gauss_moments, magnus};
+use super::magnus::{GAUSS, gauss_moments, magnus};
 use crate::lanes::{Lanes, MOST};
 use crate::momentum::{Arm, JointState};
 use crate::scalar::Scalar;

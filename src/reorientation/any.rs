@@ -208,7 +208,7 @@ impl<F: SearchedFamily> AnyReorientation for Reorientation<F> {
     }
 
     fn error(&self, coefficients: &[f64], duration: f64) -> UnitQuaternion<f64> {
-        self.error_after(self.net_rotation(coefficients, duration))
+        self.error_after(self.rotation_over(coefficients, duration))
     }
 
     fn sample_at(&self, coefficients: &[f64], duration: f64, sampling: Sampling) -> Motion {

@@ -164,13 +164,13 @@ impl Boxes {
 fn widening(task: &Arc<Task>) -> f64 {
     let problem = Reorientation::new(task.clone(), TERMS, COARSE);
     let dimension = problem.family().dimension();
-    let straight = problem.net_rotation(&vec![0.0; dimension], 0.0).inverse();
+    let straight = problem.rotation_over(&vec![0.0; dimension], 0.0).inverse();
     let missing = (straight * task.start.base.inverse() * task.goal.base).scaled_axis();
     let mut rng = Rng::new(1);
     let square = |_| {
         let widths = NARROWEST[..TERMS].iter().cycle().take(dimension);
         let path: Vec<f64> = widths.map(|&width| rng.uniform(-width, width)).collect();
-        let turn = (straight * problem.net_rotation(&path, 0.0)).scaled_axis();
+        let turn = (straight * problem.rotation_over(&path, 0.0)).scaled_axis();
         turn.dot(&missing).powi(2)
     };
     let typical = ((0..PATHS).map(square).sum::<f64>() / PATHS as f64).sqrt();

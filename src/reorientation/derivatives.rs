@@ -323,8 +323,7 @@ impl<F: Family> Reorientation<F> {
     }
 
     fn base_error_curvature(&self, coefficients: &[f64], nu: &Vector3<f64>) -> DMatrix<f64> {
-        let duration = self.timing(coefficients).duration;
-        let (error, by_turn) = self.turned_error(self.net_rotation(coefficients, duration));
+        let (error, by_turn) = self.turned_error(self.net_rotation(coefficients));
         let turned =
             self.width().run(Bend { problem: self, coefficients, vector: by_turn.tr_mul(nu) });
         // The vector part of q ⊗ exp(½ v) is the line along v less |v|²/8 of itself.

@@ -199,7 +199,7 @@ impl<F: Family> Reorientation<F> {
             Some(duration) => (duration, peaks.over(duration).excess(&self.task.limits)),
             None => (self.allowed(peaks.shortest_duration(&self.task.limits), &way), [0.0; 3]),
         };
-        let off = self.error_after(self.net_rotation(coefficients, duration));
+        let off = self.error_after(self.rotation_over(coefficients, duration));
         let attitude_error = off.imag().norm();
         let path_excess = way.excess(duration);
         let beyond = range_excess + path_excess;
@@ -242,7 +242,7 @@ impl<F: Family> Reorientation<F> {
             }
             None => (self.allowed(longest_asked(largest), &way), [0.0; 3]),
         };
-        let net = net.unwrap_or_else(|| self.net_rotation(coefficients, duration));
+        let net = net.unwrap_or_else(|| self.rotation_over(coefficients, duration));
         let attitude_error = self.error_after(net).imag().norm();
         let beyond = self.range_excess(&workspace.samples) + way.excess(duration);
         let cost = self.terms().cost(attitude_error, duration, &excess, beyond)
@@ -276,12 +276,21 @@ impl<F: Family> Reorientation<F> {
         self.given().error_after(net)
     }
 
-    /// The base's rotation over the path with these coefficients, in `duration` seconds, which do not matter without momentum.
+    /// The base's rotation over the path with these coefficients, in the shortest duration where it follows that.
     ///
     /// # Panics
     ///
     /// Panics when there are more or fewer coefficients than the family's dimension.
-    pub fn net_rotation(&self, coefficients: &[f64], duration: f64) -> UnitQuaternion<f64> {
+    pub fn net_rotation(&self, coefficients: &[f64]) -> UnitQuaternion<f64> {
+        self.rotation_over(coefficients, self.timing(coefficients).duration)
+    }
+
+    /// The same in `duration` seconds, which do not matter without momentum.
+    ///
+    /// # Panics
+    ///
+    /// Panics when there are more or fewer coefficients than the family's dimension.
+    pub fn rotation_over(&self, coefficients: &[f64], duration: f64) -> UnitQuaternion<f64> {
         self.check(coefficients);
         let Task { robot, start, .. } = &*self.task;
         let Some(drift) = self.task.drift(start.base, duration) else {

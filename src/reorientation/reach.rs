@@ -110,7 +110,7 @@ const SHARES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 impl<F: Family> Reorientation<F> {
     /// Whether motions beside this one end nearer to the goal. At the end of a search they were passed over for their time.
     pub fn is_held_by_time(&self, coefficients: &[f64], duration: f64) -> bool {
-        let error = |c: &[f64]| self.error_after(self.net_rotation(c, duration)).scaled_axis();
+        let error = |c: &[f64]| self.error_after(self.rotation_over(c, duration)).scaled_axis();
         let here = error(coefficients);
         let mut slopes = Matrix3xX::zeros(coefficients.len());
         let mut there = coefficients.to_vec();

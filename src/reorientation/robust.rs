@@ -29,7 +29,7 @@ impl<F: Family> Reorientation<F> {
         let Some(Robust { of, weight, .. }) = &self.task().robust else { return 0.0 };
         // With momentum no robust plans are asked for, so the duration does not matter.
         let error = |variant: &Self| {
-            variant.error_after(variant.net_rotation(coefficients, 0.0)).imag().norm()
+            variant.error_after(variant.rotation_over(coefficients, 0.0)).imag().norm()
         };
         let errors: Vec<f64> = self.variants().par_iter().map(error).collect();
         let together = match of {

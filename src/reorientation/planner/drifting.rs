@@ -103,7 +103,7 @@ fn near_passes(problem: &Reorientation<Spline>, duration: f64) -> Vec<f64> {
     let longest = (TAU / rate).clamp(duration, LONGEST * duration);
     let straight = vec![0.0; problem.family().dimension()];
     let time = |k: usize| duration + k as f64 / LOOKS as f64 * (longest - duration);
-    let error = |k| problem.error_after(problem.net_rotation(&straight, time(k))).angle();
+    let error = |k| problem.error_after(problem.rotation_over(&straight, time(k))).angle();
     let errors: Vec<f64> = (0..=LOOKS).map(error).collect();
     let is_least = |k: &usize| {
         let beside =
