@@ -1,7 +1,7 @@
 """Motions in every format, read by the tools whose formats they are: check.py PROGRAM FOLDER TASK …
 
-The wide table is read by numpy and compared with the others: the MAT-file as SciPy reads it, the messages as PyYAML does, and
-what `plan --json` says. Torques and the base's rate and place are worked out again by MuJoCo from positions, rates and
+The wide table is read by numpy and compared with the others: the MAT-file as SciPy reads it, the messages as PyYAML does and as
+ROS 2's message types hold them, and what `plan --json` says. Torques and the base's rate and place are worked out again by MuJoCo from positions, rates and
 accelerations of the joints, on the model that the program writes; then its player drives the robot along the motion.
 """
 import csv
@@ -16,6 +16,8 @@ import mujoco
 import numpy as np
 import scipy.io
 import yaml
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 RATE = 200  # samples per second
 QUANTITIES = ["position", "rate", "acceleration", "jerk", "torque"]
@@ -85,9 +87,51 @@ def check_octave(path, table, joints):
     return "read"
 
 
+ROS = get_typestore(Stores.ROS2_JAZZY)
+# The parts of control_msgs/action/FollowJointTrajectory's goal that concern joints.
+GOAL = "control_msgs/msg/FollowJointTrajectoryGoal"
+ROS.register(get_types_from_msg("string name\nfloat64 position\nfloat64 velocity\nfloat64 acceleration\n", "control_msgs/msg/JointTolerance"))
+ROS.register(get_types_from_msg(
+    "trajectory_msgs/msg/JointTrajectory trajectory\ncontrol_msgs/msg/JointTolerance[] path_tolerance\n"
+    "control_msgs/msg/JointTolerance[] goal_tolerance\nbuiltin_interfaces/msg/Duration goal_time_tolerance\n", GOAL))
+
+
+def to_ros(kind, value):
+    """A message of a type, from all of its fields and no others."""
+    fields = dict(ROS.fielddefs[kind][1])
+    expect(set(value) == set(fields), f"the fields of {kind}, found {sorted(value)}")
+
+    def field(definition, value):
+        node, detail = definition
+        if node == Nodetype.NAME:
+            return to_ros(detail, value)
+        if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+            (inner, name), _ = detail
+            if inner == Nodetype.BASE and name[0] != "string":
+                return np.array(value, dtype=name[0])
+            return [field((inner, name), item) for item in value]
+        return value
+
+    return ROS.types[kind](**{name: field(definition, value[name]) for name, definition in fields.items()})
+
+
+def check_ros(kind, value, joints):
+    """What a node would get over the wire."""
+    there = ROS.deserialize_cdr(ROS.serialize_cdr(to_ros(kind, value), kind), kind)
+    sent = value.get("trajectory", value)
+    trajectory = getattr(there, "trajectory", there)
+    expect(trajectory.joint_names == joints and len(trajectory.points) == len(sent["points"]), f"all points of a {kind}")
+    for point, wanted in zip(trajectory.points, sent["points"], strict=True):
+        same = all(np.array_equal(getattr(point, key), wanted[key]) for key in ("positions", "velocities", "accelerations"))
+        clock = (point.time_from_start.sec, point.time_from_start.nanosec)
+        expect(same and clock == tuple(wanted["time_from_start"].values()), f"the same points in a {kind}")
+
+
 def check_messages(folder, table, joints):
     message = yaml.safe_load((folder / "m.yaml").read_text())
     goal = yaml.safe_load((folder / "m.goal.yaml").read_text())
+    check_ros("trajectory_msgs/msg/JointTrajectory", message, joints)
+    check_ros(GOAL, goal, joints)
     expect(goal.pop("trajectory") == message, "the message within the goal")
     no_time = {"sec": 0, "nanosec": 0}
     expect(goal == {"path_tolerance": [], "goal_tolerance": [], "goal_time_tolerance": no_time}, "empty tolerances")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Plans motions of four robots, writes them in every format, and has them read by the tools whose formats they are: numpy, SciPy's reader
-# of MAT-files, PyYAML, MuJoCo. Compares their numbers with each other, torques and the base with what MuJoCo makes of the joints, and
+# of MAT-files, PyYAML, ROS 2's message types (rosbags), MuJoCo. Compares their numbers with each other, torques and the base with what MuJoCo makes of the joints, and
 # runs the player for MuJoCo; reads MAT-files with Octave where that is installed. Needs Python 3.11 or later and PyPI.
 #   ./run.sh               builds the program
 #   PROGRAM=… ./run.sh     takes a program that is built already
