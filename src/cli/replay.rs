@@ -131,6 +131,10 @@ impl Replay {
             note!("note: these columns are not read: {}", trajectory.ignored.join(", "));
         }
         let record = |sampling: Option<Sampling>| {
+            let at_points = if sampling.is_none() { replayed.at_points() } else { None };
+            if let Some(motion) = at_points {
+                return Ok(Record::new(&task.robot, motion));
+            }
             let sampling = sampling.unwrap_or_default();
             sampling.check(trajectory.points.duration())?;
             Ok(Record::new(&task.robot, replayed.sample(sampling)))

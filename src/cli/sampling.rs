@@ -9,7 +9,7 @@ use crate::reorientation::Sampling;
 #[derive(Debug, Args)]
 pub(super) struct SamplingOptions {
     /// Seconds between the samples of motions that are written; the last sample is always the motion's end [default: 500
-    /// equal intervals, of splines the next multiple of their pieces]
+    /// equal intervals, of splines the next multiple of their pieces; points with rates and accelerations keep their times]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, conflicts_with = "rate", value_parser = step)]
     dt: Option<Sampling>,
     /// Samples per second of motions that are written, instead of --dt

@@ -131,7 +131,10 @@ impl<'a> Replayed<'a> {
         let played = ReadPath::of(task, reading, &path, &base);
         let extents = path.extents();
         let mut faults = faults(task, &path, played.residual, &played.peaks, &extents);
-        let excursions = Excursions::of(task, &sample(task, points, &base, LOOKS.into()));
+        let excursions = Excursions::of(
+            task,
+            &sample(task, points, &base, Sampling::Intervals(LOOKS).times(points.duration())),
+        );
         faults.extend(on_the_way(&excursions.used));
         faults.extend(of_tool(task, excursions.tool.as_ref(), points.duration()));
         Self {
@@ -177,13 +180,19 @@ impl<'a> Replayed<'a> {
 
     /// The motion, sampled.
     pub fn sample(&self, sampling: impl Into<Sampling>) -> Motion {
-        sample(self.task, self.points, &self.base, sampling.into())
+        sample(self.task, self.points, &self.base, sampling.into().times(self.points.duration()))
+    }
+
+    /// The motion at its own points, where these alone determine it: where they have rates and accelerations.
+    pub fn at_points(&self) -> Option<Motion> {
+        let is_determined = self.points.interpolation() == Interpolation::Quintic;
+        let times = || self.points.times().to_vec();
+        is_determined.then(|| sample(self.task, self.points, &self.base, times()))
     }
 }
 
-fn sample(task: &Task, points: &Points, base: &BasePath, sampling: Sampling) -> Motion {
+fn sample(task: &Task, points: &Points, base: &BasePath, time: Vec<f64>) -> Motion {
     let path = points.played();
-    let time = sampling.times(points.duration());
     let joints = task.robot.joints().enumerate().map(|(joint, own)| {
         let at = |&time: &f64| {
             let (segment, share) = path.place(time);
