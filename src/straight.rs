@@ -41,6 +41,9 @@ pub enum StraightError {
     /// A joint leaves its range.
     #[error("joint `{0}` leaves its range after {1:.4} m")]
     Range(String, f64),
+    /// Momentum turns the base meanwhile.
+    #[error("found a robot that has angular momentum, expected none on a straight line")]
+    Drift,
 }
 
 /// Steps of a motion along the line.

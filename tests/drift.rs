@@ -6,9 +6,12 @@ use driftless::attitude::{Drift, increments};
 use driftless::input::Document;
 use driftless::lanes::Width;
 use driftless::momentum::{BaseResponse, Twist, drifting_twist, locked_momentum, total_momentum};
-use driftless::reorientation::{Accuracy, Formulated, Motion, Reorientation, TaskFile};
+use driftless::optimiser::{Scp, Settings};
+use driftless::reorientation::{
+    Accuracy, FamilyChoice, Formulated, Motion, Planner, Reorientation, TaskFile,
+};
 use driftless::robot::Robot;
-use driftless::search::{Problem, Rng};
+use driftless::search::{Problem, Rng, Watch};
 use driftless::task::Task;
 use driftless::trajectory::{Curve, Family, Spline};
 use driftless::vec3::Vec3;
@@ -216,10 +219,54 @@ fn momentum_is_read_in_both_ways() {
             "expected one of them",
         ),
         ("[task]\nangular_momentum = [1, 0, 0]\nlimits.base_turn_deg = 20\n", "base_turn_deg"),
-        ("[task]\nangular_momentum = [1, 0, 0]\ncycles = 2\n", "cycles"),
+        (
+            "[task]\nangular_momentum = [1, 0, 0]\nrobust = { samples = 4 }\n[task.uncertainty]\nmass = 0.1\n",
+            "`robust`",
+        ),
         ("[task]\nlimits.least_duration_s = 0\n", "above zero"),
     ] {
         let error = read(text).unwrap_err();
         assert!(error.contains(expected), "{text}: {error}");
+    }
+}
+
+/// A target that turns is caught: what the robot and the target had is what both have afterwards, and the base still ends at its goal.
+#[test]
+fn the_momentum_of_what_is_caught_is_added() {
+    let text = "[task]\nrobot = 'ur5e'\nangular_momentum = [0.01, 0, 0]\n\
+         [[task.via]]\njoints_deg = [10, -100, 80, -60, -90, 10]\nbase_zyx_deg = [1, 2, 0]\n\
+         capture = { mass = 20, inertia = { xx = 0.5, yy = 0.4, zz = 0.3 } }\nangular_momentum = [0, 0.03, -0.02]\n\
+         [trajectory]\nfamily = 'spline'\npieces = 16\n";
+    let planner = |text: &str| {
+        let document = Document::embedded("task.toml", text);
+        Planner::read(&document, FamilyChoice::default(), Settings::Scp(Scp::default()))
+    };
+    let found = planner(text).unwrap().plan_mission(1, 20_000, &Watch::default()).unwrap();
+    assert!(found.is_reached());
+    let momenta: Vec<[f64; 3]> =
+        found.legs.iter().map(|leg| leg.motion.task().momentum.unwrap().into()).collect();
+    assert_eq!(momenta, [[0.01, 0.0, 0.0], [0.01, 0.03, -0.02]]);
+    let ends = found.legs.iter().map(|leg| *leg.motion.sample(50).base.last().unwrap());
+    let goals = found.legs.iter().map(|leg| leg.motion.task().goal.base);
+    for (end, goal) in ends.zip(goals) {
+        assert!(end.angle_to(&goal).to_degrees() < 1e-3);
+    }
+    for (keys, expected) in [
+        (
+            "tool = { position_m = [0.6, 0.2, 0.9], approach_m = 0.1 }\nangular_momentum = [0, 1, 0]",
+            "without `capture`",
+        ),
+        (
+            "tool = { position_m = [0.6, 0.2, 0.9], retreat_m = 0.1 }\ncapture = { mass = 1 }\nangular_momentum = [0, 1, 0]",
+            "straight line",
+        ),
+        (
+            "joints_deg = [10, -100, 80, -60, -90, 10]\ncapture = { mass = 1 }\nangular_momentum = [0, 1, 0]\n[[task.via]]\nrelease = true",
+            "`release`",
+        ),
+    ] {
+        let error =
+            planner(&format!("[task]\nrobot = 'ur5e'\n[[task.via]]\n{keys}\n")).unwrap_err();
+        assert!(error.to_string().contains(expected), "{keys}: {error}");
     }
 }

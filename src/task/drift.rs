@@ -46,7 +46,8 @@ impl TaskTable {
         task: &Task,
         document: &Document,
     ) -> Result<(), InputError> {
-        if task.momentum.is_none() {
+        let is_spun = self.via.iter().any(|via| via.angular_momentum.is_some());
+        if task.momentum.is_none() && !is_spun {
             return Ok(());
         }
         let (limits, weights) = (&self.limits, &self.weights);
@@ -61,8 +62,8 @@ impl TaskTable {
             ("keep_out", self.keep_out.is_inertial().then_some(0..0)),
             ("robust", span(self.robust.as_ref())),
         ];
-        let keys = keys.into_iter().filter_map(|(key, span)| Some((key, span?)));
-        let Some((key, span)) = keys.chain(self.several()).next() else { return Ok(()) };
+        let mut keys = keys.into_iter().filter_map(|(key, span)| Some((key, span?)));
+        let Some((key, span)) = keys.next() else { return Ok(()) };
         let message = format!("found `{key}`, expected none for a robot that has angular momentum");
         let help = "such robots are planned within the limits of the joints, `clearance_m` and `keep_out` of what stands \
                     on the base"

@@ -45,8 +45,8 @@ struct Stop {
 enum Load {
     #[default]
     Same,
-    /// What it catches, at rest.
-    Capture(Spanned<PayloadTable>),
+    /// What it catches, and the angular momentum of that about its own centre of mass, inertial axes \[N·m·s\].
+    Capture(Box<Spanned<PayloadTable>>, Vector3<f64>),
     /// What it has caught is let go of.
     Release,
 }
@@ -60,15 +60,16 @@ pub struct Standing {
     pub posture: Posture,
     /// The base's centre of mass in inertial axes, whose origin is where that is at the very start \[m\].
     position: Vector3<f64>,
+    /// Total angular momentum, as [`Task::momentum`].
+    momentum: Option<Vector3<f64>>,
 }
 
 impl Standing {
     /// At rest at another posture.
     #[must_use]
     pub fn moved(&self, posture: Posture) -> Self {
-        let robot = &self.robot;
-        let by = posture.base_position(robot) - self.posture.base_position(robot);
-        Self { robot: robot.clone(), posture, position: self.position + by }
+        let by = posture.base_position(&self.robot) - self.posture.base_position(&self.robot);
+        Self { posture, position: self.position + by, ..self.clone() }
     }
 
     /// The origin of inertial axes from the system's centre of mass \[m\].
@@ -97,7 +98,7 @@ pub struct Leg {
 
 impl TaskTable {
     /// Whether it takes several motions, and if so where the file says so.
-    pub(super) fn several(&self) -> Option<(&'static str, Range<usize>)> {
+    fn several(&self) -> Option<(&'static str, Range<usize>)> {
         let tool = self.goal.tool.as_ref();
         let straight = tool.filter(|tool| tool.get_ref().straights().iter().any(Option::is_some));
         let retreat = self.start.retreat_m.as_ref();
@@ -140,12 +141,21 @@ impl TaskTable {
                     return Err(document.error_at(span, message, None));
                 }
             };
+            let spin = via.angular_momentum.as_ref();
+            if let (None, Some(spin)) = (&via.capture, spin) {
+                let message =
+                    "found `angular_momentum` without `capture`: it is that of what is caught";
+                return Err(document.error_at(spin.span(), message, None));
+            }
             let load = match (&via.capture, via.release) {
                 (Some(capture), true) => {
                     let message = "found both `capture` and `release`, expected one of them";
                     return Err(document.error_at(capture.span(), message, None));
                 }
-                (Some(capture), false) => Load::Capture(capture.clone()),
+                (Some(capture), false) => {
+                    let spin = spin.map_or([0.0; 3], |spin| spin.get_ref().map(|n| n.0));
+                    Load::Capture(Box::new(capture.clone()), spin.into())
+                }
                 (None, true) => Load::Release,
                 (None, false) => Load::Same,
             };
@@ -233,7 +243,7 @@ impl Mission {
         for Stop { name, load, .. } in &self.stops {
             match load {
                 Load::Same => {}
-                Load::Capture(capture) if carries || has_payload => {
+                Load::Capture(capture, _) if carries || has_payload => {
                     let message = format!("{name}: the tool carries something already");
                     return Err(self.document.error_at(capture.span(), message, None));
                 }
@@ -242,7 +252,7 @@ impl Mission {
                         format!("{name}: found `release`, and the tool has caught nothing");
                     return Err(self.document.error_at(0..0, message, None));
                 }
-                Load::Capture(_) => carries = true,
+                Load::Capture(..) => carries = true,
                 Load::Release => carries = false,
             }
         }
@@ -267,7 +277,7 @@ impl Mission {
     /// Where it begins.
     pub fn start(&self) -> Standing {
         let (robot, posture) = (self.ends.robot.clone(), self.ends.start.clone());
-        Standing { robot, posture, position: Vector3::zeros() }
+        Standing { robot, posture, position: Vector3::zeros(), momentum: self.ends.momentum }
     }
 
     /// How the tool leaves the start, straight back, if it does.
@@ -278,16 +288,25 @@ impl Mission {
 
     /// At the same place once the tool has caught or let go of what it is to.
     pub fn loaded(&self, stop: usize, at: &Standing) -> Result<Standing, InputError> {
-        let robot = match &self.stops[stop].load {
-            Load::Same => return Ok(at.clone()),
-            Load::Release => self.ends.robot.clone(),
-            Load::Capture(payload) => {
+        let Stop { name, load, span, .. } = &self.stops[stop];
+        match load {
+            Load::Same => Ok(at.clone()),
+            Load::Release if at.momentum.is_some() => {
+                let message = format!(
+                    "{name}: found `release`, expected none for a robot that has angular momentum"
+                );
+                Err(self.document.error_at(span.clone(), message, None))
+            }
+            Load::Release => Ok(Standing { robot: self.ends.robot.clone(), ..at.clone() }),
+            Load::Capture(payload, spin) => {
                 let none = Outfit::none(&self.document);
                 let outfit = Outfit { payload: Some(payload), ..none };
-                Arc::new(outfit.load((*at.robot).clone())?)
+                let robot = Arc::new(outfit.load((*at.robot).clone())?);
+                let momentum = at.momentum.unwrap_or_default() + spin;
+                let momentum = (momentum.norm() > 0.0).then_some(momentum);
+                Ok(Standing { robot, momentum, ..at.clone() })
             }
-        };
-        Ok(Standing { robot, ..at.clone() })
+        }
     }
 
     /// A task of the robot as it is there, from there to the same posture.
@@ -304,6 +323,7 @@ impl Mission {
             start: at.posture.clone(),
             goal: at.posture.clone(),
             tool: None,
+            momentum: at.momentum,
             path,
             uncertainty: uncertainty.transpose()?,
             robust: None,
@@ -332,6 +352,9 @@ impl Mission {
         span: &Range<usize>,
         key: &str,
     ) -> Result<StraightPath, InputError> {
+        if from.momentum.is_some() {
+            return Err(self.blocked(&StraightError::Drift, span, key));
+        }
         let Posture { joints, base } = &from.posture;
         let path = straight.path(&from.robot, joints, *base);
         path.map_err(|error| self.blocked(&error, span, key))
@@ -404,6 +427,9 @@ impl Mission {
 impl Leg {
     /// One whose end is approached straight: the motion before ends where the way back from there leads.
     fn approached(task: Task, straight: &Straight) -> Result<Self, StraightError> {
+        if task.momentum.is_some() {
+            return Err(StraightError::Drift);
+        }
         let back = straight.path(&task.robot, &task.goal.joints, task.goal.base)?;
         let before = end_of(&back);
         let approach = Task { start: before.clone(), ..task.clone() };

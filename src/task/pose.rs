@@ -50,9 +50,12 @@ pub(super) struct ViaTable {
     pub(super) tool: Option<Spanned<ToolTable>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) base_zyx_deg: Option<[Finite; 3]>,
-    /// What the tool catches, at rest.
+    /// What the tool catches; its centre of mass is at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) capture: Option<Spanned<PayloadTable>>,
+    /// What it catches turns: its angular momentum about its centre of mass, inertial axes \[N·m·s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) angular_momentum: Option<Spanned<[Finite; 3]>>,
     /// Whether it lets go of what it has caught.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub(super) release: bool,
