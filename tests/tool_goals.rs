@@ -2,9 +2,11 @@
 
 use driftless::input::Document;
 use driftless::inverse_kinematics::{Orientation, Origin, ToolTarget, miss, solve};
+use driftless::optimiser::{Scp, Settings};
 use driftless::posture::Posture;
-use driftless::reorientation::TaskFile;
+use driftless::reorientation::{FamilyChoice, Planner, Reach, TaskFile};
 use driftless::robot::Robot;
+use driftless::search::Watch;
 use driftless::task::Task;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
@@ -178,4 +180,57 @@ fn goals_out_of_reach_are_told_with_the_distance() {
     let nearest = nearest.fold(f64::INFINITY, f64::min);
     let lengths: f64 = robot.links().iter().map(|link| link.placement.translation().norm()).sum();
     assert!(off.position <= nearest && off.position >= 5.0 - lengths, "{} {nearest}", off.position);
+}
+
+/// Where the tool is at the end of the motion, and when, by [`Posture`]: there the target has come meanwhile.
+#[test]
+fn goals_that_move_are_met() {
+    let keys = "position_m = [0.5, 0.3, 0.8], zyx_deg = [20, 60, 10], velocity_m_s = [0.01, -0.02, 0.015], \
+                angular_velocity_deg_s = [0, 1, -2]";
+    let text = |limits: &str| {
+        format!(
+            "[task]\nrobot = 'ur5e'\ngoal.tool = {{ {keys} }}\n{limits}[trajectory]\nfamily = 'spline'\npieces = 12\n"
+        )
+    };
+    let plan = |limits: &str| {
+        let document = Document::embedded("task.toml", &text(limits));
+        let settings = Settings::Scp(Scp::default());
+        let planner = Planner::read(&document, FamilyChoice::default(), settings).unwrap();
+        planner.plan(1, 20_000, &Watch::default()).unwrap()
+    };
+    for (limits, stated) in [("", None), ("limits.least_duration_s = 25\n", Some(25.0))] {
+        let found = plan(limits);
+        assert_eq!(found.reach, Reach::Reached, "{limits}");
+        let t_f = found.assessment.duration;
+        assert!(stated.is_none_or(|stated| t_f == stated), "{t_f}");
+        let task = found.problem.task();
+        let motion = found.problem.sample(&found.coefficients, t_f, 50);
+        let joints: Vec<f64> =
+            motion.joints.iter().map(|joint| joint.derivatives.last().unwrap()[0]).collect();
+        let (position, turned) = tool(&task.robot, &joints, *motion.base.last().unwrap());
+        // Inertial axes begin at the base's centre of mass at the start.
+        let origin: Vector3<f64> =
+            Posture::of(&task.robot, &task.start.joints, task.start.base).position.into();
+        let expected = Vector3::new(0.5 + 0.01 * t_f, 0.3 - 0.02 * t_f, 0.8 + 0.015 * t_f);
+        let miss = (position - origin - expected).norm();
+        assert!(miss < 1e-6, "{limits}: {miss:e}");
+        let about = Vector3::new(0.0, t_f, -2.0 * t_f).map(f64::to_radians);
+        let zyx = [20.0_f64, 60.0, 10.0].map(f64::to_radians);
+        let start = Rotation3::from_euler_angles(zyx[2], zyx[1], zyx[0]);
+        let off = (Rotation3::from_scaled_axis(about) * start).angle_to(&turned);
+        assert!(off.to_degrees() < 1e-4, "{limits}: {off:e}");
+    }
+    for (text, expected) in [
+        (text(""), "least_duration_s"),
+        ("[task]\ngoal.tool = { position_m = [1, 0, 2], velocity_m_s = [0, 0, 0.1], frame = 'base' }\n\
+          limits.least_duration_s = 9\n".to_owned(), "in inertial axes"),
+    ] {
+        let error = task(&text).unwrap_err();
+        assert!(error.contains(expected), "{error}");
+    }
+    let via = "[[task.via]]\ntool = { position_m = [0.6, 0.2, 0.9], velocity_m_s = [0, 0, 0.1] }\n";
+    let document = Document::embedded("task.toml", &format!("[task]\nrobot = 'ur5e'\n{via}"));
+    let settings = Settings::Scp(Scp::default());
+    let error = Planner::read(&document, FamilyChoice::default(), settings).unwrap_err();
+    assert!(error.to_string().contains("task of one motion"), "{error}");
 }

@@ -111,14 +111,16 @@ impl Replay {
             let message = "the robot's load changes on the way, expected one that stays the same";
             return Err(document.error_at(0..0, message, None).into());
         }
-        let task = table.build_ends(&document)?;
-        self.files.check_joints(&task.robot)?;
-        warn_of(&task.robot);
+        let robot = table.robot(&document)?;
+        self.files.check_joints(&robot)?;
+        warn_of(&robot);
         let unit = self.unit.map(|unit| match unit {
             Unit::Rad => AngleUnit::Rad,
             Unit::Deg => AngleUnit::Deg,
         });
-        let trajectory = GivenTrajectory::read(file, &task.robot, unit)?;
+        let trajectory = GivenTrajectory::read(file, &robot, unit)?;
+        let table = if table.moves() { table.lasting(trajectory.points.duration()) } else { table };
+        let task = table.build_ends(&document)?;
         let replayed = Replayed::new(&task, &trajectory.points);
         let task_name = shown(self.task.as_ref(), "the paper's task");
         let told = Trajectory { file, task: &task_name, replayed: &replayed };

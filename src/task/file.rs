@@ -14,6 +14,7 @@ use super::reader::Reader;
 use super::tables::{
     Cycles, LIMIT_KEYS, LimitsTable, PostureTable, StatedTable, WeightsTable, placed, unplaced,
 };
+use super::tool_goal::ToolTable;
 use super::uncertainty::{Robust, RobustTable, UncertaintyTable};
 use super::way::Way;
 use super::{PoseTable, Posture, PostureParts, Task, ToolGoal};
@@ -296,6 +297,27 @@ impl TaskTable {
         Err(document.error_at(self.robot.span(), message, Some(help)))
     }
 
+    /// Whether the tool's goal moves while the robot does.
+    pub fn moves(&self) -> bool {
+        self.goal.tool.as_ref().is_some_and(|tool| tool.get_ref().moves())
+    }
+
+    /// Whether the file says how long the motion lasts at least.
+    pub fn states_least_duration(&self) -> bool {
+        self.limits.least_duration_s.is_some()
+    }
+
+    /// The same task where the motion lasts so long \[s\] at least, and meets a goal that moves then.
+    #[must_use]
+    pub fn lasting(&self, seconds: f64) -> Self {
+        let met =
+            |tool: &Spanned<ToolTable>| Spanned::new(tool.span(), tool.get_ref().met_at(seconds));
+        let goal = PostureTable { tool: self.goal.tool.as_ref().map(met), ..self.goal.clone() };
+        let least_duration_s = Some(Spanned::new(0..0, Positive(seconds)));
+        let limits = LimitsTable { least_duration_s, ..self.limits.clone() };
+        Self { goal, limits, ..self.clone() }
+    }
+
     /// The task. A robot that does not come with the program is a file, sought beside `document`.
     pub fn build(&self, document: &Document) -> Result<Task, InputError> {
         self.check_single(document)?;
@@ -380,6 +402,16 @@ impl TaskTable {
             let message = "found both `tool` and the joints' positions, expected one of them";
             return Err(reader.document.error_at(span, message, None));
         }
+        let least = self.limits.least_duration_s.as_ref();
+        let table = match least {
+            Some(least) => Spanned::new(table.span(), table.get_ref().met_at(least.get_ref().0)),
+            None if self.moves() => {
+                let message = "found a target that moves, expected `least_duration_s` in `[task.limits]`, too, which says when \
+                               it is met; `plan` alone can find that";
+                return Err(failed(message.to_owned()));
+            }
+            None => table.clone(),
+        };
         let base = self.goal.base();
         if self.via.iter().any(ViaTable::changes_load) {
             // Where the tool can be then depends on what it carries.

@@ -82,7 +82,7 @@ impl Standing {
 enum Place {
     /// The joints' positions \[rad or m\].
     Joints(Vec<f64>),
-    Tool(ToolTable),
+    Tool(Box<ToolTable>),
     /// Where the joints are before.
     Stay,
 }
@@ -132,7 +132,7 @@ impl TaskTable {
             let parts = via.parts();
             let base = parts.base().unwrap_or(ends.goal.base);
             let (place, span) = match (&parts.tool, parts.joints_span()) {
-                (Some(tool), None) => (Place::Tool(tool.get_ref().clone()), tool.span()),
+                (Some(tool), None) => (Place::Tool(Box::new(tool.get_ref().clone())), tool.span()),
                 (None, Some(span)) => (Place::Joints(reader.joints(&parts)?), span),
                 (None, None) => (Place::Stay, 0..0),
                 (Some(_), Some(span)) => {
@@ -177,7 +177,7 @@ impl TaskTable {
             }));
         }
         let (place, span) = match &self.goal.tool {
-            Some(tool) => (Place::Tool(tool.get_ref().clone()), tool.span()),
+            Some(tool) => (Place::Tool(Box::new(tool.get_ref().clone())), tool.span()),
             None => (Place::Joints(ends.goal.joints.clone()), 0..0),
         };
         if let Place::Tool(tool) = &place

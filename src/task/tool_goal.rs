@@ -39,6 +39,14 @@ pub(super) struct ToolTable {
     approach_m: Option<Positive>,
     #[serde(skip_serializing_if = "Option::is_none")]
     retreat_m: Option<Positive>,
+    /// How the target moves while the robot does, inertial axes; position and orientation are those at the start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    velocity_m_s: Option<[Finite; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    angular_velocity_deg_s: Option<[Finite; 3]>,
+    /// When it is met \[s\].
+    #[serde(skip)]
+    met_at: Option<f64>,
 }
 
 /// Where the tool is to be at the end, and how the joints bring it there.
@@ -60,6 +68,25 @@ impl ToolTable {
         goal: &UnitQuaternion<f64>,
     ) -> Result<ToolTarget, String> {
         let vector = |values: [Finite; 3]| Vector3::from(values.map(|value| value.0));
+        if self.moves() && self.frame == Frame::Base {
+            return Err(
+                "found a target in base axes that moves, expected one in inertial axes".to_owned()
+            );
+        }
+        if self.moves() && self.met_at.is_none() {
+            return Err(
+                "found a target that moves, expected one only as the goal of a task of one motion"
+                    .to_owned(),
+            );
+        }
+        if self.moves() && (self.approach_m.is_some() || self.retreat_m.is_some()) {
+            return Err(
+                "found a straight line to a target that moves, expected one that stays".to_owned()
+            );
+        }
+        let [shift, turn] = [self.velocity_m_s, self.angular_velocity_deg_s]
+            .map(|rate| rate.map_or(Vector3::zeros(), vector) * self.met_at.unwrap_or_default());
+        let turn = UnitQuaternion::from_scaled_axis(turn.map(f64::to_radians));
         let unit = |values: [Finite; 3], key: &str| {
             Unit::try_new(vector(values), 1e-9)
                 .ok_or_else(|| format!("`{key}` is zero, expected a direction"))
@@ -82,11 +109,11 @@ impl ToolTable {
             }
             (None, None, _) => Orientation::Any,
             (Some(zyx), None, _) => {
-                Orientation::Full((into_base * attitude(zyx)).to_rotation_matrix())
+                Orientation::Full((into_base * turn * attitude(zyx)).to_rotation_matrix())
             }
             (None, Some(axis), tool) => Orientation::Axis {
                 tool: tool.map_or(Ok(Vector3::z_axis()), |tool| unit(tool, "tool_axis"))?,
-                direction: into_base * unit(axis, "axis")?,
+                direction: into_base * (turn * unit(axis, "axis")?),
             },
         };
         if self.position_m.is_none() && orientation == Orientation::Any {
@@ -95,7 +122,8 @@ impl ToolTable {
                     .to_owned(),
             );
         }
-        let position = self.position_m.map(|position| into_base * (vector(position) + offset));
+        let at = |position| into_base * (vector(position) + shift + offset);
+        let position = self.position_m.map(at);
         Ok(ToolTarget { position, origin, orientation })
     }
 
@@ -123,6 +151,17 @@ impl ToolTable {
             let direction = -Vector3::from(axis);
             distance.map(|distance| Straight { direction, distance: distance.0, keeps_orientation })
         })
+    }
+
+    /// Whether the target moves.
+    pub(super) fn moves(&self) -> bool {
+        let rates = [self.velocity_m_s, self.angular_velocity_deg_s].into_iter().flatten();
+        rates.flatten().any(|rate| rate.0 != 0.0)
+    }
+
+    /// The same, met after so many seconds.
+    pub(super) fn met_at(&self, seconds: f64) -> Self {
+        Self { met_at: Some(seconds), ..self.clone() }
     }
 
     /// The branch that is asked for, counted from one.

@@ -4,6 +4,7 @@ mod branches;
 mod closing;
 mod drifting;
 mod mission;
+mod moving;
 mod planned;
 mod remark;
 mod walls;
@@ -124,6 +125,8 @@ pub struct Planner {
     optimiser: Settings,
     /// Of a task of several motions all of them; then `problem` is that from the start to the goal.
     mission: Option<Arc<Mission>>,
+    /// Whether the tool's goal moves and the file does not say when it is met.
+    is_met_sometime: bool,
 }
 
 impl Planner {
@@ -137,6 +140,8 @@ impl Planner {
         let is_named = choice.family.is_some() || trajectory.states_family();
         let is_spline = matches!(optimiser, Settings::Scp(_));
         let trajectory = choice.over(trajectory, is_spline).map_err(PlanError::ForSplines)?;
+        let is_met_sometime = task.moves() && !task.states_least_duration();
+        let task = if is_met_sometime { moving::reachable(task, document)? } else { task };
         let file = TaskFile { task, trajectory };
         let is_mission = file.task.is_mission();
         let mission = is_mission.then(|| file.task.mission(document)).transpose()?.map(Arc::new);
@@ -150,7 +155,15 @@ impl Planner {
             }
             _ => None,
         };
-        Ok(Self { document: document.clone(), file, problem, other, optimiser, mission })
+        Ok(Self {
+            document: document.clone(),
+            file,
+            problem,
+            other,
+            optimiser,
+            mission,
+            is_met_sometime,
+        })
     }
 
     /// At how many places the robot comes to rest in a task of several motions.
@@ -181,6 +194,11 @@ impl Planner {
             return Err(PlanError::Several);
         }
         let search = Search { seed, budget, watch };
+        if self.is_met_sometime { self.meeting(search) } else { self.plan_once(search) }
+    }
+
+    /// Where the goal is the tool's, to the best of its branches.
+    fn plan_once(&self, search: Search<'_>) -> Result<Planned, PlanError> {
         match &self.task().tool {
             Some(tool) if tool.branches.len() > 1 => {
                 let tasks = tool.branches.iter().map(|joints| self.task().ending_with(joints));
