@@ -24,12 +24,13 @@ one() {
     # New inputs go into a folder of their own; those in corpus/ are kept by hand.
     local target=$1 seconds=$2 work=$built/fuzz/$1
     mkdir -p "$work" "artifacts/$target"
+    local outcome=0
     "$built/release/$target" "$work" "corpus/$target" -artifact_prefix="artifacts/$target/" -seed=1 \
-        -max_total_time="$seconds" -dict=toml.dict -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 > "$work.log" 2>&1 &&
-        local outcome=0 || local outcome=1
+        -max_total_time="$seconds" -dict=toml.dict -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 > "$work.log" 2>&1 ||
+        outcome=1
     echo "-- $target, $seconds s"
     grep -E "ERROR|panicked|instead of|Test unit|DONE|^stat::number_of_executed" "$work.log" || tail -5 "$work.log"
-    return $outcome
+    return "$outcome"
 }
 export -f one
 printf '%s\n' "${targets[@]}" | xargs -P "$(nproc)" -I{} bash -c "one {} $seconds"

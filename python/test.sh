@@ -17,7 +17,7 @@ CARGO_TARGET_DIR=$(cd "$target" && pwd) MATURIN_PEP517_ARGS=--locked \
     "$folder/venv/bin/python" -m pip wheel "${quiet[@]}" --no-deps --wheel-dir "$folder/wheels" ./python
 wheel=$(echo "$folder"/wheels/driftless-*.whl)
 "$folder/venv/bin/python" -m pip install "${quiet[@]}" --force-reinstall --no-deps "$wheel"
-"$folder/venv/bin/python" -m pip install "${quiet[@]}" "$wheel[test,nevergrad]"
+"$folder/venv/bin/python" -m pip install "${quiet[@]}" "${wheel}[test,nevergrad]"
 
 # The command without Python, which results are compared with.
 cargo build --release --locked
@@ -46,6 +46,6 @@ for version in 3.10 3.11 3.12 3.13; do
     other=$folder/venv-$version
     [ -x "$other/bin/python" ] || "$found" -m venv "$other"
     "$other/bin/python" -m pip install "${quiet[@]}" --force-reinstall --no-deps "$wheel"
-    "$other/bin/python" -m pip install "${quiet[@]}" "$wheel[plot,pandas]" pytest
+    "$other/bin/python" -m pip install "${quiet[@]}" "${wheel}[plot,pandas]" pytest
     "$other/bin/pytest" --quiet python/tests/test_{problems,tasks,package}.py
 done

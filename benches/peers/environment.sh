@@ -1,3 +1,4 @@
+# shellcheck shell=bash disable=SC2034
 # What the scripts in the folders beside this file share; each sources it first. It goes to the crate's root
 # and makes a Python environment with the folder's own requirements.
 #   here    the folder of the script      target  where cargo builds

@@ -39,7 +39,7 @@ for program in munged slurmctld slurmd sbatch; do
         break
     fi
 done
-tests+=($slurm)
+[ -z "$slurm" ] || tests+=("$slurm")
 [ "${#tests[@]}" -gt 0 ] || exit 0
 cargo test --release --locked --test cluster --no-run
 

@@ -2,6 +2,7 @@
 # Compares `scp` with CasADi and IPOPT: ./run.sh [STARTS], or of free-form motions ./run.sh --free-form [STARTS
 # [PIECES …]]. Needs Python 3.11 or later, gcc and PyPI. All run on one core, CPU=1 unless set otherwise, with one
 # thread each.
+# shellcheck source=benches/peers/environment.sh
 . "$(dirname "$0")/../environment.sh"
 comparison=compare.py
 if [ "${1-}" = --free-form ]; then

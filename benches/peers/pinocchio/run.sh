@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Compares the base's rollout with one in C++ on Pinocchio: ./run.sh [ROUNDS]. Needs Python 3.11 or
 # later, g++ and PyPI. All run on one core, CPU=1 unless set otherwise, with one thread each.
+# shellcheck source=benches/peers/environment.sh
 . "$(dirname "$0")/../environment.sh"
 include=$("$python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/cmeel.prefix/include
 # Headers alone: what the library has compiled is not compiled for this processor. The definitions are
