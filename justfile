@@ -74,6 +74,10 @@ cluster:
 fuzz:
     fuzz/run.sh
 
+# spelling, shell scripts, workflows; needs Python 3.11
+prose:
+    .ci/lint
+
 # licences and sources of dependencies
 deny:
     .ci/deny
