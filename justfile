@@ -74,6 +74,10 @@ cluster:
 fuzz:
     fuzz/run.sh
 
+# the book in target/book, and all links; needs Python 3.11
+book:
+    docs/build.sh
+
 # spelling, shell scripts, workflows; needs Python 3.11
 prose:
     .ci/lint
