@@ -56,7 +56,8 @@
 //! # Features
 //!
 //! `harness` (default): experiments, stored results, tables and figures. `cli` (default): the command `driftless`.
-//! Without both: the planner, the optimisers and the test functions.
+//! `film`, a part of `harness`: films of motions.
+//! Without all: the planner, the optimisers and the test functions.
 
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -99,6 +100,9 @@ pub mod dynamics;
 #[cfg(feature = "harness")]
 #[doc(hidden)]
 pub mod export;
+#[cfg(feature = "film")]
+#[doc(hidden)]
+pub mod film;
 #[doc(hidden)]
 pub mod inverse_kinematics;
 #[doc(hidden)]

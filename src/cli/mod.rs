@@ -15,6 +15,8 @@ macro_rules! note {
     };
 }
 
+#[cfg(feature = "film")]
+mod animate;
 mod check;
 #[cfg(feature = "harness")]
 mod chosen;
@@ -116,6 +118,12 @@ enum Verb {
     /// rest or jumps. It is read as ROS 2's joint trajectory controller plays it, with straight lines, cubics or quintics between
     /// points, as these have positions alone, rates too, or accelerations too.
     Replay(replay::Replay),
+    /// Draw a motion as a film
+    ///
+    /// The robot is drawn with the shapes that its file states or, without any, with those that follow from its masses and joints; with
+    /// the base's axes, the base at its goal, dashed, the way of the tool, and what the robot has to keep out of.
+    #[cfg(feature = "film")]
+    Animate(animate::Animate),
     /// Show optimisers, problems and robots with their settings
     List(list::List),
     /// Convert robot files from and to URDF
@@ -176,6 +184,10 @@ enum CliError {
     /// A motion could not be written.
     #[error(transparent)]
     Export(#[from] ExportError),
+    /// A film could not be drawn or written.
+    #[cfg(feature = "film")]
+    #[error(transparent)]
+    Film(crate::film::FilmError),
     /// A figure could not be drawn or written.
     #[cfg(feature = "harness")]
     #[error(transparent)]
@@ -288,6 +300,25 @@ impl From<TrajectoryError> for CliError {
     }
 }
 
+#[cfg(feature = "film")]
+impl From<crate::film::FilmError> for CliError {
+    fn from(error: crate::film::FilmError) -> Self {
+        use crate::film::FilmError;
+        match error {
+            FilmError::File(error) => Self::File(error),
+            FilmError::Interrupted => Self::Interrupted(error.to_string()),
+            FilmError::NoFfmpeg { .. } => Self::Usage {
+                message: error.to_string(),
+                help: Some(
+                    "install ffmpeg, or write .gif, .apng or a folder of pictures without it"
+                        .to_owned(),
+                ),
+            },
+            error => Self::Film(error),
+        }
+    }
+}
+
 #[cfg(feature = "harness")]
 impl From<crate::experiment::ShardError> for CliError {
     fn from(error: crate::experiment::ShardError) -> Self {
@@ -346,6 +377,8 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         #[cfg(feature = "harness")]
         Verb::Serve(serve) => serve.execute(),
         Verb::Replay(replay) => replay.execute(),
+        #[cfg(feature = "film")]
+        Verb::Animate(animate) => animate.execute(),
         Verb::List(list) => list.execute(),
         Verb::Robot(robot) => robot.execute(),
         Verb::Check(check) => check.execute(),

@@ -13,7 +13,7 @@ use crate::search::Watch;
 /// Time between plain lines.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
-/// Shows how many evaluations of all are done, until dropped.
+/// Shows how much of all is done, until dropped.
 pub(super) struct Bar {
     display: ProgressBar,
     done: Arc<AtomicBool>,
@@ -21,11 +21,22 @@ pub(super) struct Bar {
 }
 
 impl Bar {
+    /// Of evaluations.
     pub(super) fn new(evaluations: u64, watch: Arc<Watch>) -> Self {
-        let bar = ProgressBar::new(evaluations);
-        let template =
-            "{bar:40} {percent:>3} %  {human_pos} of {human_len} evaluations, {eta} left {msg}";
-        if let Ok(style) = ProgressStyle::with_template(template) {
+        Self::counting(evaluations, "evaluations", move || watch.evaluations())
+    }
+
+    /// Of so many things; `count` says how many are done.
+    pub(super) fn counting(
+        all: u64,
+        things: &'static str,
+        count: impl Fn() -> u64 + Send + 'static,
+    ) -> Self {
+        let bar = ProgressBar::new(all);
+        let template = format!(
+            "{{bar:40}} {{percent:>3}} %  {{human_pos}} of {{human_len}} {things}, {{eta}} left {{msg}}"
+        );
+        if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
         }
         let done = Arc::new(AtomicBool::new(false));
@@ -36,11 +47,11 @@ impl Bar {
                 let mut said = Instant::now();
                 let mut shown = 0;
                 while !done.load(Ordering::Relaxed) {
-                    let made = watch.evaluations();
+                    let made = count();
                     bar.set_position(made);
                     if !on_terminal && said.elapsed() >= BETWEEN_LINES && made != shown {
                         (said, shown) = (Instant::now(), made);
-                        note!("{made} of {evaluations} evaluations");
+                        note!("{made} of {all} {things}");
                     }
                     park_timeout(Duration::from_millis(100));
                 }

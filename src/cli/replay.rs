@@ -13,6 +13,7 @@ use crate::reorientation::{
     AngleUnit, AssessmentJson, Excursions, ExcursionsJson, GivenTrajectory, Published, Reading,
     Record, ReplayFile, Replayed, Sampling, ShapeJson, TaskFile,
 };
+use crate::task::Task;
 
 /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
 #[derive(Debug, Args)]
@@ -21,17 +22,62 @@ pub(super) struct Replay {
     /// a row for each time and a column for each joint, or a row for each time and joint; without one, the published motion
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Task that a trajectory is for; without one, the paper's
-    #[arg(long, value_name = "TASK")]
-    task: Option<PathBuf>,
-    /// Unit of angles in a table whose columns' names state none
-    #[arg(long)]
-    unit: Option<Unit>,
+    #[command(flatten)]
+    reading: TrajectoryOptions,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     files: MotionFiles,
+}
+
+/// How a trajectory is read.
+#[derive(Debug, Args)]
+pub(super) struct TrajectoryOptions {
+    /// Task that a trajectory is for; without one, the paper's
+    #[arg(long, value_name = "TASK")]
+    pub(super) task: Option<PathBuf>,
+    /// Unit of angles in a table whose columns' names state none
+    #[arg(long)]
+    unit: Option<Unit>,
+}
+
+impl TrajectoryOptions {
+    /// Finds fault with options that have no effect on what is not a trajectory.
+    pub(super) fn check_unused(&self) -> Result<(), CliError> {
+        for (option, is_given) in [("task", self.task.is_some()), ("unit", self.unit.is_some())] {
+            if is_given {
+                let message = format!(
+                    "found --{option}, which is for a trajectory in .yaml, .json, .csv or .parquet"
+                );
+                return Err(CliError::Usage { message, help: None });
+            }
+        }
+        Ok(())
+    }
+
+    /// A trajectory and its task, for a verb.
+    pub(super) fn read(
+        &self,
+        file: &Path,
+        verb: &str,
+    ) -> Result<(Task, GivenTrajectory), CliError> {
+        let document = read_task(self.task.as_deref())?;
+        expect_task(&document, verb)?;
+        let table = TaskFile::read(&document)?.task;
+        if table.is_mission() && table.mission(&document)?.changes_load() {
+            let message = "the robot's load changes on the way, expected one that stays the same";
+            return Err(document.error_at(0..0, message, None).into());
+        }
+        let robot = table.robot(&document)?;
+        let unit = self.unit.map(|unit| match unit {
+            Unit::Rad => AngleUnit::Rad,
+            Unit::Deg => AngleUnit::Deg,
+        });
+        let trajectory = GivenTrajectory::read(file, &robot, unit)?;
+        let table = if table.moves() { table.lasting(trajectory.points.duration()) } else { table };
+        Ok((table.build_ends(&document)?, trajectory))
+    }
 }
 
 /// Units of angles.
@@ -72,14 +118,7 @@ impl Replay {
         if let Some(file) = self.file.as_deref().filter(|file| GivenTrajectory::has_name(file)) {
             return self.replay_trajectory(file);
         }
-        for (option, is_given) in [("task", self.task.is_some()), ("unit", self.unit.is_some())] {
-            if is_given {
-                let message = format!(
-                    "found --{option}, which is for a trajectory in .yaml, .json, .csv or .parquet"
-                );
-                return Err(CliError::Usage { message, help: None });
-            }
-        }
+        self.reading.check_unused()?;
         let document = read_or(self.file.as_deref(), ReplayFile::paper)?;
         let published = ReplayFile::read(&document)?.build(&document)?;
         self.files.check_joints(&published.problem.task().robot)?;
@@ -104,25 +143,11 @@ impl Replay {
 
     fn replay_trajectory(&self, file: &Path) -> Result<(), CliError> {
         start_worker_threads()?;
-        let document = read_task(self.task.as_deref())?;
-        expect_task(&document, "replay")?;
-        let table = TaskFile::read(&document)?.task;
-        if table.is_mission() && table.mission(&document)?.changes_load() {
-            let message = "the robot's load changes on the way, expected one that stays the same";
-            return Err(document.error_at(0..0, message, None).into());
-        }
-        let robot = table.robot(&document)?;
-        self.files.check_joints(&robot)?;
-        warn_of(&robot);
-        let unit = self.unit.map(|unit| match unit {
-            Unit::Rad => AngleUnit::Rad,
-            Unit::Deg => AngleUnit::Deg,
-        });
-        let trajectory = GivenTrajectory::read(file, &robot, unit)?;
-        let table = if table.moves() { table.lasting(trajectory.points.duration()) } else { table };
-        let task = table.build_ends(&document)?;
+        let (task, trajectory) = self.reading.read(file, "replay")?;
+        self.files.check_joints(&task.robot)?;
+        warn_of(&task.robot);
         let replayed = Replayed::new(&task, &trajectory.points);
-        let task_name = shown(self.task.as_ref(), "the paper's task");
+        let task_name = shown(self.reading.task.as_ref(), "the paper's task");
         let told = Trajectory { file, task: &task_name, replayed: &replayed };
         if self.json {
             say!("{}", told.json(&trajectory.ignored));

@@ -45,7 +45,7 @@ impl BaseBox {
     }
 
     /// That holds a shape.
-    fn around(shape: &Shape) -> Self {
+    pub fn around(shape: &Shape) -> Self {
         match shape {
             Shape::Cuboid { centre, half, rotation } => {
                 let Self { edges, .. } = Self::upright((*half).into());
@@ -74,6 +74,14 @@ impl BaseBox {
         let [a, b] = [1, 2].map(|k| self.edges[(edge + k) % 3]);
         let middle = self.centre + self.edges[edge] * side;
         [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[u, v]| middle + a * u + b * v)
+    }
+
+    /// Its edges, each from one of its ends to the other \[m\].
+    pub fn outline(&self) -> Vec<[Vector3<f64>; 2]> {
+        let faces = [-1.0, 1.0].map(|side| self.face(2, side));
+        let around = faces.iter().flat_map(|face| (0..4).map(|k| [face[k], face[(k + 1) % 4]]));
+        let [low, high] = faces;
+        around.chain(low.into_iter().zip(high).map(|(low, high)| [low, high])).collect()
     }
 
     /// The outward normal of the same face, not normalised.

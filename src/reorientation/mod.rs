@@ -13,6 +13,8 @@ mod excursions;
 mod exhibits;
 mod export;
 mod family;
+#[cfg(feature = "film")]
+mod film;
 mod fitness;
 mod formulation;
 #[cfg(feature = "harness")]
@@ -37,6 +39,8 @@ mod robust;
 mod robustness;
 mod sampling;
 mod settings;
+#[cfg(feature = "film")]
+mod snapshot;
 mod spline_box;
 #[cfg(feature = "harness")]
 mod subject;
@@ -60,6 +64,8 @@ pub(crate) use exhibits::{SAMPLES, write_motion_figures};
 pub use export::write_motions;
 pub use export::{ExportError, MotionFormat, Record, intervals, write_motion};
 pub use family::{FamilyName, FamilySpec};
+#[cfg(feature = "film")]
+pub use film::MotionFilm;
 pub use fitness::{Assessment, Reorientation};
 pub use formulation::{Formulated, Formulation};
 pub use json::{AssessmentJson, ExcursionsJson, NOT_CHECKED, ShapeJson};

@@ -1,14 +1,15 @@
 //! The robot along a motion.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use crate::figure::Figure;
 use crate::figure::axis::Axis;
 use crate::figure::marks::{Line, Mark, Marked};
 use crate::figure::panel::Panel;
 use crate::figure::style::{COLOURS, DASHES, GRID, INK, Marker, PAPER, Stroke, Width, mix};
-use crate::posture::{BaseBox, Branches, Posture, Satellite};
+use crate::posture::{BaseBox, Branches, Satellite};
 use crate::reorientation::motion::Motion;
+use crate::reorientation::snapshot::Snapshot;
 use crate::task::Task;
 
 /// Snapshots of a motion, and those in a row.
@@ -35,38 +36,6 @@ impl View {
 
     fn of(&self, place: &Vector3<f64>) -> [f64; 2] {
         [self.right.dot(place), self.up.dot(place)]
-    }
-}
-
-/// The robot at one time, inertial axes.
-struct Snapshot {
-    time: f64,
-    attitude: UnitQuaternion<f64>,
-    base: Vector3<f64>,
-    tool: Vector3<f64>,
-    /// The ends of each link.
-    links: Vec<[Vector3<f64>; 2]>,
-}
-
-impl Snapshot {
-    fn of(task: &Task, branches: &Branches, motion: &Motion, i: usize) -> Self {
-        let angles: Vec<f64> = motion.joints.iter().map(|j| j.derivatives[i][0]).collect();
-        let attitude = motion.base[i];
-        let posture = Posture::with(branches, &task.robot, &angles, attitude);
-        let base = Vector3::from(posture.position);
-        let place = |place: &[f64; 3]| base + attitude * Vector3::from(*place);
-        let origins: Vec<Vector3<f64>> = posture.origins.iter().map(place).collect();
-        let carried = origins.iter().zip(&branches.carriers);
-        let carried = carried.filter_map(|(end, carrier)| Some([origins[(*carrier)?], *end]));
-        let tips = posture.tips.iter().map(place).zip(&branches.tip_carriers);
-        let tips = tips.map(|(end, carrier)| [origins[*carrier], end]);
-        Self {
-            time: motion.time[i],
-            attitude,
-            base,
-            tool: origins.last().copied().unwrap_or(base),
-            links: carried.chain(tips).collect(),
-        }
     }
 }
 
@@ -164,12 +133,6 @@ fn drawing(view: &View, blocks: &[BaseBox], task: &Task, way: &[Snapshot]) -> Ve
 /// The edges of the base's body in its goal attitude, where the base is now.
 fn goal(view: &View, body: &BaseBox, task: &Task, now: &Snapshot) -> Vec<Mark> {
     let place = |corner: &Vector3<f64>| view.of(&(now.base + task.goal.base * corner));
-    let edges = [-1.0, 1.0].into_iter().flat_map(|side| {
-        let corners = body.face(2, side);
-        (0..4).map(move |k| [corners[k], corners[(k + 1) % 4]])
-    });
-    let uprights = body.face(2, -1.0).into_iter().zip(body.face(2, 1.0));
-    let edges = edges.chain(uprights.map(|(low, high)| [low, high]));
     let stroke = Stroke { dashes: DASHES[2], ..Stroke::plain(INK, 0.12) };
     let edge = |ends: [Vector3<f64>; 2]| Line {
         name: String::new(),
@@ -177,5 +140,5 @@ fn goal(view: &View, body: &BaseBox, task: &Task, now: &Snapshot) -> Vec<Mark> {
         points: ends.iter().map(place).collect(),
         marked: Marked::Points,
     };
-    edges.map(|ends| Mark::Line(edge(ends))).collect()
+    body.outline().into_iter().map(|ends| Mark::Line(edge(ends))).collect()
 }

@@ -1,0 +1,192 @@
+//! `driftless animate`.
+
+#[cfg(feature = "harness")]
+use std::path::Path;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use clap::Args;
+
+use super::progress::Bar;
+use super::replay::TrajectoryOptions;
+use super::{CliError, read_or, start_worker_threads, warn_of, watch};
+use crate::film::{Film, FilmFormat, Size, View, write_film};
+use crate::output::{check_folder_writable, check_writable};
+use crate::reorientation::{GivenTrajectory, Motion, MotionFilm, Published, ReplayFile, Replayed};
+use crate::task::Task;
+
+/// Most pictures of a film.
+const MOST_PICTURES: f64 = 100_000.0;
+
+/// Draw a motion as a film
+#[derive(Debug, Args)]
+pub(super) struct Animate {
+    /// Motion as `replay` reads it: a file with a [motion] table, or a trajectory in .yaml, .json, .csv or .parquet
+    #[cfg_attr(feature = "harness", doc = "; or a folder of results, for its best motion")]
+    /// [default: the motion published by Xiao et al. (2023)]
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    #[command(flatten)]
+    reading: TrajectoryOptions,
+    /// Instance whose best motion is drawn, of a folder of results [default: the first]
+    #[cfg(feature = "harness")]
+    #[arg(long, value_name = "LABEL")]
+    instance: Option<String>,
+    /// File to write: .gif, .apng or .png (animated), .mp4 or .webm (where ffmpeg is installed); or a folder, for a PNG of each
+    /// picture
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Width and height [pixels]
+    #[arg(long, value_name = "SIZE", default_value_t = Size::FULL_HD)]
+    size: Size,
+    /// Pictures per second
+    #[arg(long, value_name = "N", default_value_t = 30.0, allow_negative_numbers = true, value_parser = fps)]
+    fps: f64,
+    /// Seconds of the motion in a second of the film
+    #[arg(long, value_name = "N", default_value_t = 1.0, allow_negative_numbers = true, value_parser = speed)]
+    speed: f64,
+    /// Where it is seen from, in inertial axes: angle from x towards y, angle above both [degrees]
+    #[arg(
+        long,
+        value_name = "AZIMUTH,ELEVATION",
+        default_value = "-58,25",
+        allow_hyphen_values = true
+    )]
+    view: View,
+}
+
+fn fps(text: &str) -> Result<f64, String> {
+    let found = text.parse().ok().filter(|fps| (1.0..=240.0).contains(fps));
+    found.ok_or_else(|| "expected a number from 1 to 240".to_owned())
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let found = text.parse().ok().filter(|speed| (1e-3..=1e3).contains(speed));
+    found.ok_or_else(|| "expected a number from 0.001 to 1000".to_owned())
+}
+
+impl Animate {
+    pub(super) fn execute(self) -> Result<(), CliError> {
+        let format = self.format()?;
+        start_worker_threads()?;
+        match self.file.as_deref() {
+            #[cfg(feature = "harness")]
+            Some(folder) if folder.is_dir() => self.draw_best(folder, format),
+            Some(file) if GivenTrajectory::has_name(file) => {
+                self.check_instance()?;
+                let (task, trajectory) = self.reading.read(file, "animate")?;
+                warn_of(&task.robot);
+                let replayed = Replayed::new(&task, &trajectory.points);
+                let duration = trajectory.points.duration();
+                self.draw(&task, duration, format, |intervals| replayed.sample(intervals))
+            }
+            file => {
+                self.check_instance()?;
+                self.reading.check_unused()?;
+                let document = read_or(file, ReplayFile::paper)?;
+                let published = ReplayFile::read(&document)?.build(&document)?;
+                let Published { problem, coefficients, duration, .. } = &published;
+                warn_of(&problem.task().robot);
+                let sample = |intervals| problem.sample(coefficients, *duration, intervals);
+                self.draw(problem.task(), *duration, format, sample)
+            }
+        }
+    }
+
+    /// The format, where all is as that takes it.
+    fn format(&self) -> Result<FilmFormat, CliError> {
+        let usage = |message: String| CliError::Usage { message, help: None };
+        let format = FilmFormat::of(&self.out).ok_or_else(|| {
+            let endings = FilmFormat::ENDINGS;
+            usage(format!(
+                "cannot tell the format of {}, expected a name in {endings}",
+                self.out.display()
+            ))
+        })?;
+        let most = format.most_per_second();
+        if self.fps > most {
+            let fps = self.fps;
+            return Err(usage(format!(
+                "--fps: found {fps}, and viewers show at most {most} pictures of a GIF per second"
+            )));
+        }
+        format.check()?;
+        match format {
+            FilmFormat::Stills => check_folder_writable(&self.out)?,
+            _ => check_writable(&self.out)?,
+        }
+        Ok(format)
+    }
+
+    /// Finds fault with an instance of what is no folder of results.
+    fn check_instance(&self) -> Result<(), CliError> {
+        #[cfg(feature = "harness")]
+        if self.instance.is_some() {
+            let message = "found --instance, which is for a folder of results".to_owned();
+            return Err(CliError::Usage { message, help: None });
+        }
+        Ok(())
+    }
+
+    #[cfg(feature = "harness")]
+    fn draw_best(&self, folder: &Path, format: FilmFormat) -> Result<(), CliError> {
+        use crate::reorientation::{BestChoice, best_motion};
+
+        self.reading.check_unused()?;
+        super::results::start_all_threads()?;
+        let folder = crate::experiment::Folder::open(folder, &crate::registry::registry())?;
+        let (plan, runs) = (&folder.plan, crate::experiment::load(&folder.plan, &folder.store)?);
+        super::warnings::warn_of_damage(&folder.store);
+        match best_motion(plan, &runs, self.instance.as_deref()) {
+            BestChoice::Found { problem, coefficients, duration } => {
+                let sample = |intervals| problem.sample(&coefficients, duration, intervals);
+                self.draw(problem.task(), duration, format, sample)
+            }
+            BestChoice::NoneOf(labels) => {
+                let Some(asked) = &self.instance else {
+                    return Err(super::results::no_results(folder.path(), "no motion"));
+                };
+                Err(CliError::Usage {
+                    message: format!("--instance: no motion of an instance `{asked}`"),
+                    help: Some(format!("those with motions are {}", labels.join(", "))),
+                })
+            }
+        }
+    }
+
+    fn draw(
+        &self,
+        task: &Task,
+        duration: f64,
+        format: FilmFormat,
+        sample: impl FnOnce(usize) -> Motion,
+    ) -> Result<(), CliError> {
+        let pictures = duration / self.speed * self.fps;
+        if pictures > MOST_PICTURES {
+            let message = format!(
+                "found {pictures:.0} pictures of a motion of {duration:.3} s, expected {MOST_PICTURES} or fewer"
+            );
+            let help = Some("a larger --speed or a smaller --fps takes fewer".to_owned());
+            return Err(CliError::Usage { message, help });
+        }
+        let motion = sample(pictures.round().max(1.0) as usize);
+        let film = Film { size: self.size, count: motion.time.len(), per_second: self.fps };
+        let drawn = MotionFilm::new(task, &motion, self.view, self.size);
+        let watch = watch();
+        let done = Arc::new(AtomicU64::new(0));
+        let go_on = || {
+            done.fetch_add(1, Ordering::Relaxed);
+            !watch.is_interrupted()
+        };
+        {
+            let done = done.clone();
+            let count = move || done.load(Ordering::Relaxed);
+            let _bar = Bar::counting(film.count as u64, "pictures", count);
+            write_film(&self.out, format, film, &|i| drawn.picture(i), &go_on)?;
+        }
+        let seconds = film.count as f64 / self.fps;
+        say!("{}: {} pictures, {seconds:.2} s", self.out.display(), film.count);
+        Ok(())
+    }
+}
