@@ -19,18 +19,19 @@ use crate::task::Task;
 /// Most pictures of a film.
 const MOST_PICTURES: f64 = 100_000.0;
 
+/// Intervals of a motion that is drawn, at least.
+const LEAST_INTERVALS: usize = 200;
+
 /// Draw a motion as a film
 #[derive(Debug, Args)]
 pub(super) struct Animate {
-    /// Motion as `replay` reads it: a file with a [motion] table, or a trajectory in .yaml, .json, .csv or .parquet
-    #[cfg_attr(feature = "harness", doc = "; or a folder of results, for its best motion")]
-    /// [default: the motion published by Xiao et al. (2023)]
+    /// Motion as `replay` reads it: a file with a [motion] table, or a trajectory in .yaml, .json, .csv or .parquet; or a folder of
+    /// results, for its best motion; without one, the motion published by Xiao et al. (2023)
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     #[command(flatten)]
     reading: TrajectoryOptions,
     /// Instance whose best motion is drawn, of a folder of results [default: the first]
-    #[cfg(feature = "harness")]
     #[arg(long, value_name = "LABEL")]
     instance: Option<String>,
     /// File to write: .gif, .apng or .png (animated), .mp4 or .webm (where ffmpeg is installed); or a folder, for a PNG of each
@@ -81,6 +82,11 @@ impl Animate {
                 let duration = trajectory.points.duration();
                 self.draw(&task, duration, format, |intervals| replayed.sample(intervals))
             }
+            #[cfg(not(feature = "harness"))]
+            Some(folder) if folder.is_dir() => {
+                let message = "this build leaves out folders of results".to_owned();
+                Err(CliError::Usage { message, help: None })
+            }
             file => {
                 self.check_instance()?;
                 self.reading.check_unused()?;
@@ -121,7 +127,6 @@ impl Animate {
 
     /// Finds fault with an instance of what is no folder of results.
     fn check_instance(&self) -> Result<(), CliError> {
-        #[cfg(feature = "harness")]
         if self.instance.is_some() {
             let message = "found --instance, which is for a folder of results".to_owned();
             return Err(CliError::Usage { message, help: None });
@@ -131,28 +136,33 @@ impl Animate {
 
     #[cfg(feature = "harness")]
     fn draw_best(&self, folder: &Path, format: FilmFormat) -> Result<(), CliError> {
-        use crate::reorientation::{BestChoice, best_motion};
+        use super::results::{no_results, start_all_threads};
+        use crate::experiment::{Folder, load};
+        use crate::reorientation::best_motions;
 
         self.reading.check_unused()?;
-        super::results::start_all_threads()?;
-        let folder = crate::experiment::Folder::open(folder, &crate::registry::registry())?;
-        let (plan, runs) = (&folder.plan, crate::experiment::load(&folder.plan, &folder.store)?);
+        start_all_threads()?;
+        let folder = Folder::open(folder, &crate::registry::registry())?;
+        let runs = load(&folder.plan, &folder.store)?;
         super::warnings::warn_of_damage(&folder.store);
-        match best_motion(plan, &runs, self.instance.as_deref()) {
-            BestChoice::Found { problem, coefficients, duration } => {
-                let sample = |intervals| problem.sample(&coefficients, duration, intervals);
-                self.draw(problem.task(), duration, format, sample)
-            }
-            BestChoice::NoneOf(labels) => {
-                let Some(asked) = &self.instance else {
-                    return Err(super::results::no_results(folder.path(), "no motion"));
-                };
-                Err(CliError::Usage {
-                    message: format!("--instance: no motion of an instance `{asked}`"),
-                    help: Some(format!("those with motions are {}", labels.join(", "))),
-                })
-            }
+        let all = best_motions(&folder.plan.results(&runs));
+        let mut chosen = all.iter();
+        let best = match &self.instance {
+            None => chosen.next(),
+            Some(label) => chosen.find(|best| best.instance.label == *label),
+        };
+        if let Some(best) = best {
+            let sample = |intervals: usize| best.sample(intervals);
+            return self.draw(best.problem.task(), best.duration, format, sample);
         }
+        let (Some(asked), false) = (&self.instance, all.is_empty()) else {
+            return Err(no_results(folder.path(), "no motion"));
+        };
+        let labels: Vec<&str> = all.iter().map(|best| &*best.instance.label).collect();
+        Err(CliError::Usage {
+            message: format!("--instance: found no motion of an instance `{asked}`"),
+            help: Some(format!("instances with a motion: {}", labels.join(", "))),
+        })
     }
 
     fn draw(
@@ -170,8 +180,11 @@ impl Animate {
             let help = Some("a larger --speed or a smaller --fps takes fewer".to_owned());
             return Err(CliError::Usage { message, help });
         }
-        let motion = sample(pictures.round().max(1.0) as usize);
-        let film = Film { size: self.size, count: motion.time.len(), per_second: self.fps };
+        let intervals = pictures.round().max(1.0) as usize;
+        // Few pictures still show a smooth way of the tool.
+        let finer = LEAST_INTERVALS.div_ceil(intervals);
+        let motion = sample(intervals * finer);
+        let film = Film { size: self.size, count: intervals + 1, per_second: self.fps };
         let drawn = MotionFilm::new(task, &motion, self.view, self.size);
         let watch = watch();
         let done = Arc::new(AtomicU64::new(0));
@@ -183,7 +196,7 @@ impl Animate {
             let done = done.clone();
             let count = move || done.load(Ordering::Relaxed);
             let _bar = Bar::counting(film.count as u64, "pictures", count);
-            write_film(&self.out, format, film, &|i| drawn.picture(i), &go_on)?;
+            write_film(&self.out, format, film, &|i| drawn.picture(i * finer), &go_on)?;
         }
         let seconds = film.count as f64 / self.fps;
         say!("{}: {} pictures, {seconds:.2} s", self.out.display(), film.count);

@@ -13,7 +13,7 @@ pub(super) struct PngFile<'a> {
     before: Option<Picture>,
 }
 
-fn error(source: EncodingError) -> FilmError {
+fn error(source: &EncodingError) -> FilmError {
     FilmError::Encode { format: "PNG", reason: source.to_string() }
 }
 
@@ -28,14 +28,14 @@ impl<'a> PngFile<'a> {
         encoder.set_color(ColorType::Rgba);
         encoder.set_depth(BitDepth::Eight);
         encoder.set_compression(Compression::Default);
-        encoder.set_animated(pictures as u32, 0).map_err(error)?;
-        Ok(Self { writer: encoder.write_header().map_err(error)?, size, before: None })
+        encoder.set_animated(pictures as u32, 0).map_err(|e| error(&e))?;
+        Ok(Self { writer: encoder.write_header().map_err(|e| error(&e))?, size, before: None })
     }
 
     /// Goes on with pictures, each of which stays for some milliseconds.
     pub(super) fn push(&mut self, pictures: Vec<Picture>, delays: &[u16]) -> Result<(), FilmError> {
         for (picture, delay) in pictures.into_iter().zip(delays) {
-            self.add(&picture, *delay).map_err(error)?;
+            self.add(&picture, *delay).map_err(|e| error(&e))?;
             self.before = Some(picture);
         }
         Ok(())
@@ -64,6 +64,6 @@ impl<'a> PngFile<'a> {
 
     /// Ends the file.
     pub(super) fn finish(self) -> Result<(), FilmError> {
-        self.writer.finish().map_err(error)
+        self.writer.finish().map_err(|e| error(&e))
     }
 }

@@ -13,6 +13,19 @@ pub(super) struct Facet {
 }
 
 impl Facet {
+    /// Whether it lies between the eye and a place.
+    pub(super) fn hides(&self, [x, y, nearness]: [f64; 3]) -> bool {
+        let [a, b, c] = self.corners;
+        let cross = |[ux, uy, _]: [f64; 3], [vx, vy, _]: [f64; 3]| {
+            (ux - x) * (vy - y) - (uy - y) * (vx - x)
+        };
+        let parts = [cross(b, c), cross(c, a), cross(a, b)];
+        let area: f64 = parts.iter().sum();
+        let is_within = parts.iter().all(|part| part * area > 0.0);
+        let own = (parts[0] * a[2] + parts[1] * b[2] + parts[2] * c[2]) / area;
+        self.opacity >= 1.0 && is_within && own > nearness
+    }
+
     /// A piece of a line of some width \[pixels\].
     pub(super) fn of_line(
         ends: [[f64; 3]; 2],

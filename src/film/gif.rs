@@ -16,7 +16,7 @@ pub(super) struct GifFile {
     before: Option<Vec<u8>>,
 }
 
-fn error(source: EncodingError) -> FilmError {
+fn error(source: &EncodingError) -> FilmError {
     FilmError::Encode { format: "GIF", reason: source.to_string() }
 }
 
@@ -26,8 +26,8 @@ impl GifFile {
         let palette = Palette::of(samples);
         let (width, height) = (size.width as u16, size.height as u16);
         let encoder = Encoder::new(Vec::new(), width, height, &palette.bytes());
-        let mut encoder = encoder.map_err(error)?;
-        encoder.set_repeat(Repeat::Infinite).map_err(error)?;
+        let mut encoder = encoder.map_err(|e| error(&e))?;
+        encoder.set_repeat(Repeat::Infinite).map_err(|e| error(&e))?;
         Ok(Self { encoder, size, palette, before: None })
     }
 
@@ -46,7 +46,7 @@ impl GifFile {
             })
             .collect();
         for frame in &frames {
-            self.encoder.write_lzw_pre_encoded_frame(frame).map_err(error)?;
+            self.encoder.write_lzw_pre_encoded_frame(frame).map_err(|e| error(&e))?;
         }
         self.before = all.pop();
         Ok(())
@@ -54,7 +54,7 @@ impl GifFile {
 
     /// The whole file.
     pub(super) fn finish(self) -> Result<Vec<u8>, FilmError> {
-        self.encoder.into_inner().map_err(error)
+        self.encoder.into_inner().map_err(|e| error(&e))
     }
 }
 

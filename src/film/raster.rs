@@ -6,6 +6,8 @@ use super::picture::{Picture, Size};
 /// Samples across and down a pixel.
 const SAMPLES: usize = 3;
 
+const OF_A_PIXEL: usize = SAMPLES * SAMPLES;
+
 /// Rows of pixels that are worked out together; their samples fit a processor's cache.
 const ROWS: usize = 16;
 
@@ -150,8 +152,7 @@ impl Band {
                 }
             }
         }
-        const COUNT: usize = SAMPLES * SAMPLES;
-        sums.map(|sum| ((sum + COUNT / 2) / COUNT) as u8)
+        sums.map(|sum| ((sum + OF_A_PIXEL / 2) / OF_A_PIXEL) as u8)
     }
 }
 

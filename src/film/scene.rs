@@ -9,8 +9,8 @@ use super::raster::filled;
 use super::solid::{Edge, Solid};
 use super::text;
 
-/// Of all light, how much reaches what is turned away from it.
-const AMBIENT: f64 = 0.5;
+/// How bright what is turned away from the light is.
+const DARKEST: f64 = 0.45;
 
 /// Line widths and letters are told at this height of a picture \[pixels\].
 const HEIGHT: f64 = 1080.0;
@@ -35,7 +35,7 @@ pub struct Scene {
     pub solids: Vec<Solid>,
     /// Lines, which bodies hide.
     pub lines: Vec<Line>,
-    /// Texts at places, which nothing hides.
+    /// Texts at places, whole or hidden.
     pub labels: Vec<Label>,
     /// Lines of text at the lower left.
     pub caption: Vec<String>,
@@ -73,13 +73,22 @@ impl Scene {
         let (clear, solid): (Vec<_>, Vec<_>) =
             self.solids.iter().partition(|solid| solid.opacity < 1.0);
         let mut facets = Vec::new();
-        solid.iter().for_each(|solid| drawing.solid(solid, &mut facets));
-        self.lines.iter().for_each(|line| drawing.line(line, &mut facets));
-        clear.iter().for_each(|solid| drawing.solid(solid, &mut facets));
+        for solid in solid {
+            drawing.solid(solid, &mut facets);
+        }
+        for line in &self.lines {
+            drawing.line(line, &mut facets);
+        }
+        for solid in clear {
+            drawing.solid(solid, &mut facets);
+        }
         let mut picture = filled(&facets, size);
         let em = (TEXT * scale).max(SMALLEST_TEXT);
         for Label { text, place, colour } in &self.labels {
-            let [x, y, _] = camera.project(place);
+            let at @ [x, y, _] = camera.project(place);
+            if facets.iter().any(|facet| facet.hides(at)) {
+                continue;
+            }
             let left = x - 0.5 * text::width(text, em);
             text::write(&mut picture, text, [left, y + 0.27 * em], em, *colour);
         }
@@ -106,7 +115,7 @@ impl Drawing<'_> {
         let seen = form.faces().into_iter().filter(|face| face.is_seen_from(&eye));
         facets.extend(seen.map(|face| {
             let shade = |normal: &Vector3<f64>| {
-                (AMBIENT + (1.0 - AMBIENT) * normal.dot(&light)).clamp(0.6 * AMBIENT, 1.0)
+                DARKEST + (1.0 - DARKEST) * (0.5 + 0.5 * normal.dot(&light)).clamp(0.0, 1.0)
             };
             Facet {
                 corners: face.corners.map(|corner| self.camera.project(&corner)),
@@ -218,6 +227,20 @@ mod tests {
         };
         let found = [(1.0, -1.5), (1.0, 1.0), (1.0, 1.5), (0.3, 0.0)].map(|(o, d)| has_red(o, d));
         assert_eq!(found, [false, true, true, true]);
+    }
+
+    #[test]
+    fn a_label_behind_a_solid_is_left_out() {
+        let view = View { azimuth: 0.0, elevation: 0.0 };
+        let is_written = |x| {
+            let mut scene = cube(1.0);
+            let camera = Camera::around(&scene.solids[0].form.corners(), view, SIZE);
+            let place = Vector3::new(x, 0.0, 0.0);
+            scene.labels.push(Label { text: "x", place, colour: [255, 0, 0] });
+            let picture = scene.picture(&camera, SIZE);
+            picture.pixels.iter().any(|[r, g, _]| u16::from(*r) > u16::from(*g) + 60)
+        };
+        assert_eq!([2.0, -2.0].map(is_written), [true, false]);
     }
 
     #[test]

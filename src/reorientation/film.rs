@@ -80,7 +80,7 @@ impl<'a> MotionFilm<'a> {
             let form = form(&solid.shape, &Vector3::zeros(), &Rotation3::identity());
             (solid.anchor, Solid { form, colour: KEEP_OUT, opacity: KEEP_OUT_OPACITY })
         });
-        let size_of = |block: &BaseBox| block.edges.iter().map(|e| e.norm()).fold(0.0, f64::max);
+        let size_of = |block: &BaseBox| block.edges.iter().map(Vector3::norm).fold(0.0, f64::max);
         let mut film = Self {
             task,
             robot: task.robot.with_shapes().0,
@@ -166,8 +166,7 @@ impl<'a> MotionFilm<'a> {
             let depth = carrier + usize::from(own.link.joint.axis().is_some());
             depths.push(depth);
             let place = Vector3::from(own.frame.position);
-            let rotation =
-                Matrix3::from_columns(&own.frame.rotation.0.map(|axis| Vector3::from(axis)));
+            let rotation = Matrix3::from_columns(&own.frame.rotation.0.map(Vector3::from));
             let origin = now.base + now.attitude * place;
             let axes = turn * Rotation3::from_matrix_unchecked(rotation);
             solids.extend(own.link.body.shapes.iter().map(|shape| Solid {

@@ -59,7 +59,7 @@ pub use excursions::{Closest, Excursions, PathLimit, ToolEnd, Used};
 #[cfg(feature = "harness")]
 pub use exhibits::{FoundBy, motion_scene};
 #[cfg(all(feature = "cli", feature = "harness"))]
-pub(crate) use exhibits::{SAMPLES, write_motion_figures};
+pub(crate) use exhibits::{SAMPLES, best::best_motions, write_motion_figures};
 #[cfg(feature = "harness")]
 pub use export::write_motions;
 pub use export::{ExportError, MotionFormat, Record, intervals, write_motion};

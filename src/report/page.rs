@@ -44,6 +44,7 @@ const SCRIPTS: [&str; 9] = [
     include_str!("script/solids.js"),
     include_str!("script/camera.js"),
     include_str!("script/view.js"),
+    include_str!("script/recorder.js"),
     include_str!("script/player.js"),
     include_str!("script/main.js"),
 ];

@@ -8,30 +8,30 @@ use crate::reorientation::subject::{DURATION, LARGEST_TURN, RESIDUAL, TaskSubjec
 
 /// The best motion of an instance.
 #[derive(Debug)]
-pub(in crate::reorientation) struct BestMotion<'a> {
-    pub(in crate::reorientation) run: &'a Run,
-    pub(in crate::reorientation) instance: &'a Instance,
+pub(crate) struct BestMotion<'a> {
+    pub(crate) run: &'a Run,
+    pub(crate) instance: &'a Instance,
     /// The optimiser's label.
-    pub(in crate::reorientation) optimiser: &'a str,
-    pub(in crate::reorientation) problem: &'a dyn AnyReorientation,
-    pub(in crate::reorientation) coefficients: Vec<f64>,
+    pub(crate) optimiser: &'a str,
+    pub(crate) problem: &'a dyn AnyReorientation,
+    pub(crate) coefficients: Vec<f64>,
     /// Error of the base \[°\].
-    pub(in crate::reorientation) residual_deg: f64,
+    pub(crate) residual_deg: f64,
     /// Duration \[s\].
-    pub(in crate::reorientation) duration: f64,
+    pub(crate) duration: f64,
     /// Largest turn of the base on the way \[°\]; NaN where it was not stored.
-    pub(in crate::reorientation) turn_deg: f64,
+    pub(crate) turn_deg: f64,
 }
 
 impl BestMotion<'_> {
     /// Sampled.
-    pub(in crate::reorientation) fn sample(&self, sampling: impl Into<Sampling>) -> Motion {
+    pub(crate) fn sample(&self, sampling: impl Into<Sampling>) -> Motion {
         self.problem.sample_at(&self.coefficients, self.duration, sampling.into())
     }
 }
 
 /// The best motion of every instance that has one, in the order of the plan.
-pub(in crate::reorientation) fn best_motions<'a>(results: &Results<'a>) -> Vec<BestMotion<'a>> {
+pub(crate) fn best_motions<'a>(results: &Results<'a>) -> Vec<BestMotion<'a>> {
     let motion = |run: &'a Run| {
         let instance = results.instance(run);
         let subject = TaskSubject::of(instance)?;

@@ -54,8 +54,9 @@ class Player {
     const part = (name) => section.querySelector(`[data-part="${name}"]`);
     this.scenes = scenes;
     this.view = new View(part("canvas"));
+    this.recorder = new Recorder(part("canvas"));
     this.parts = Object.fromEntries(
-      ["canvas", "play", "scrub", "speed", "loop", "reset", "instance", "about", "time", "yaw", "pitch", "roll", "error", "joints", "limits", "limited", "marks"]
+      ["canvas", "play", "scrub", "speed", "loop", "reset", "record", "instance", "about", "time", "yaw", "pitch", "roll", "error", "joints", "limits", "limited", "marks"]
         .map((name) => [name, part(name)]),
     );
     this.listen();
@@ -63,8 +64,10 @@ class Player {
   }
 
   listen() {
-    const { canvas, play, scrub, reset, instance } = this.parts;
+    const { canvas, play, scrub, reset, record, instance } = this.parts;
     play.addEventListener("click", () => this.toggle());
+    record.hidden = !this.recorder.type;
+    record.addEventListener("click", () => this.record());
     canvas.addEventListener("keydown", (event) => {
       if (event.key !== " ") return;
       event.preventDefault();
@@ -108,6 +111,16 @@ class Player {
     else this.play();
   }
 
+  /** Plays the motion from its start, once, and offers what was seen as a file. */
+  record() {
+    if (this.recorder.isRecording) return this.pause();
+    this.pause();
+    this.go(0);
+    this.recorder.start("motion.webm");
+    this.parts.record.textContent = "Stop";
+    this.play();
+  }
+
   play() {
     if (this.share >= 1) this.share = 0;
     this.playing = true;
@@ -116,7 +129,7 @@ class Player {
     const step = (now) => {
       const share = this.share + (Math.max(0, now - before) / 1000 / this.scene.duration) * Number(this.parts.speed.value);
       before = now;
-      const ends = share >= 1 && !this.parts.loop.checked;
+      const ends = share >= 1 && (this.recorder.isRecording || !this.parts.loop.checked);
       this.go(ends ? 1 : share % 1);
       if (ends) this.pause();
       else this.frame = requestAnimationFrame(step);
@@ -129,6 +142,8 @@ class Player {
     // Else a frame that was asked for already would go on beside those of the next start.
     cancelAnimationFrame(this.frame);
     this.parts.play.textContent = "Play";
+    this.recorder.stop();
+    this.parts.record.textContent = "Save film";
   }
 
   /** Stops at a time. */
