@@ -275,6 +275,19 @@ def check_speed(page, checks, name):
     play.click()
 
 
+def check_film(browser, path, checks):
+    """The button plays the motion once and hands over a film, which begins as WebM does (RFC 8794: the EBML header's identifier)."""
+    with opened(browser, path, checks) as page:
+        name, button = path.parent.name, page.locator("[data-part='record']")
+        checks.that(button.is_visible(), f"{name}: no button saves a film")
+        page.locator("[data-part='speed']").select_option("4")
+        page.locator("[data-part='loop']").set_checked(True)
+        film = downloaded(page, button)
+        checks.equal(film[:4], bytes.fromhex("1a45dfa3"), f"{name}: film")
+        checks.equal(button.inner_text(), "Save film", f"{name}: button after a film")
+        checks.equal(page.locator("[data-part='play']").inner_text(), "Play", f"{name}: plays on after a film")
+
+
 def check_large(browser, path, checks, pictures):
     """A table of ten thousand rows does not keep the reader waiting."""
     page = path.read_text()
@@ -317,6 +330,8 @@ def main(results, pictures, axe):
                     check_worst_moments(page, folder, checks)
                 check_keyboard(page, checks, folder.name)
             check_looks(browser, path, checks, pictures)
+            if folder.name == "default":
+                check_film(browser, path, checks)
             print(f"{folder.name:14} {size / 1e3:6.0f} kB {checks.made - before:5} checks", flush=True)
         seconds = check_large(browser, results / "default" / "report.html", checks, pictures)
     print(f"ten thousand rows open in {seconds:.1f} s; axe {'ran' if axe.exists() else 'is not there'}")
