@@ -164,7 +164,10 @@ fn follow(page: &Path) -> (usize, usize) {
             Part::Command { line, prints: Some(expected) } => {
                 let found = sandbox.run_as_it_is(line);
                 let [a, b] = [&found, expected].map(|text| text.lines().collect::<Vec<_>>());
-                assert!(is_as_expected(&a, &b), "{name}: {line} prints\n{found}\nexpected\n{expected}");
+                assert!(
+                    is_as_expected(&a, &b),
+                    "{name}: {line} prints\n{found}\nexpected\n{expected}"
+                );
             }
         }
     }
@@ -172,7 +175,8 @@ fn follow(page: &Path) -> (usize, usize) {
 }
 
 fn pages(folder: &str) -> Vec<PathBuf> {
-    let mut pages: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    let mut pages: Vec<PathBuf> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
     pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
     pages.sort();
     pages
