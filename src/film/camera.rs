@@ -150,25 +150,22 @@ impl Camera {
 mod tests {
     use super::*;
 
-    /// From straight in front, `x = f X / (d − Z)` (any textbook): a square of two metres across that is the nearest and largest
-    /// of all fills the free height.
+    /// Seen along the x axis, `y = f Y / (d − X)` (any textbook): of a block of one metre depth the front face fills the free height of
+    /// 5 % to 88 % of the picture, and inverse depths of both faces are a metre apart.
     #[test]
     fn what_is_nearest_fills_the_picture() {
-        let corners: Vec<Vector3<f64>> = [[1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]]
-            .iter()
-            .flat_map(|[y, z]| [0.5, -0.5].map(|x| Vector3::new(x, *y, *z)))
-            .collect();
+        let corner = |x: f64, z: f64| Vector3::new(x, 0.0, z);
+        let corners = [corner(0.5, 1.0), corner(0.5, -1.0), corner(-0.5, 1.0), corner(-0.5, -1.0)];
         let view = View { azimuth: 0.0, elevation: 0.0 };
         let camera = Camera::around(&corners, view, Size::FULL_HD);
-        let [_, top, near] = camera.project(&corners[2]);
-        let [_, bottom, _] = camera.project(&corners[0]);
-        let [_, farther, far] = camera.project(&corners[3]);
-        assert!((top - 54.0).abs() < 0.1, "{top}");
-        let low = camera.project(&corners[4]);
-        assert!((low[0] + camera.project(&corners[0])[0]).is_finite() && near > far);
-        assert!(bottom >= top && farther > top);
-        // Depths differ by the metre between both faces.
-        assert!((far.recip() - near.recip() - 1.0).abs() < 1e-9);
+        let [top, bottom, farther, _] = corners.map(|corner| camera.project(&corner));
+        assert!((top[0] - 960.0).abs() < 1e-9, "{top:?}");
+        assert!((top[1] - 0.05 * 1080.0).abs() < 1e-6, "{top:?}");
+        assert!((bottom[1] - 0.88 * 1080.0).abs() < 1e-6, "{bottom:?}");
+        assert!((farther[2].recip() - top[2].recip() - 1.0).abs() < 1e-9);
+        let middle = f64::midpoint(top[1], bottom[1]);
+        let [near, far] = [top, farther].map(|at| (at[1] - middle) / at[2]);
+        assert!((near - far).abs() < 1e-6, "{near} {far}");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::clearance::Anchor;
 use crate::film::{Camera, Form, Label, Line, Picture, Scene, Size, Solid, View};
 use crate::kinematics::Outward;
 use crate::posture::{BaseBox, Branches, Posture, Satellite};
-use crate::robot::{Robot, Shape};
+use crate::robot::{Link, Robot, Shape};
 use crate::task::{ClearanceLimit, Task};
 
 /// Colours of what is drawn; bodies of the arm take turns.
@@ -36,6 +36,9 @@ const LETTER: f64 = 1.12;
 /// The radius of what joins joints, as a share of the robot's size.
 const BONE_RADIUS: f64 = 0.008;
 
+/// By how much every other body of the arm is wider than it is: of two with the same round end at a joint one is seen there.
+const WIDER: f64 = 1.01;
+
 /// Most pieces of the tool's way.
 const WAY_PIECES: usize = 600;
 
@@ -54,6 +57,8 @@ pub struct MotionFilm<'a> {
     base: Vec<Solid>,
     /// Half the longest edge of the base's body \[m\].
     base_size: f64,
+    /// Whether rods stand for bodies of the arm that have no shapes, and the radius of these \[m\].
+    has_bones: bool,
     bone: f64,
     /// Keep-outs, by what they are fixed in.
     keep_outs: Vec<(Anchor, Solid)>,
@@ -81,9 +86,12 @@ impl<'a> MotionFilm<'a> {
             (solid.anchor, Solid { form, colour: KEEP_OUT, opacity: KEEP_OUT_OPACITY })
         });
         let size_of = |block: &BaseBox| block.edges.iter().map(Vector3::norm).fold(0.0, f64::max);
+        let robot = task.robot.with_shapes().0;
+        let is_bare = |link: &Link| link.joint.axis().is_some() && link.body.shapes.is_empty();
         let mut film = Self {
             task,
-            robot: task.robot.with_shapes().0,
+            has_bones: robot.links().iter().any(is_bare),
+            robot,
             motion,
             base: base(&satellite, &blocks),
             base_size: blocks.first().map_or(0.0, size_of),
@@ -156,7 +164,9 @@ impl<'a> MotionFilm<'a> {
             colour: BONE,
             opacity: 1.0,
         };
-        solids.extend(now.links.iter().map(bone));
+        if self.has_bones {
+            solids.extend(now.links.iter().map(bone));
+        }
         let positions: Vec<f64> =
             self.motion.joints.iter().map(|joint| joint.derivatives[sample][0]).collect();
         // For every link, how many joints that move are between the base and it, its own included.
@@ -169,8 +179,14 @@ impl<'a> MotionFilm<'a> {
             let rotation = Matrix3::from_columns(&own.frame.rotation.0.map(Vector3::from));
             let origin = now.base + now.attitude * place;
             let axes = turn * Rotation3::from_matrix_unchecked(rotation);
+            let wider = if depth % 2 == 1 { WIDER } else { 1.0 };
             solids.extend(own.link.body.shapes.iter().map(|shape| Solid {
-                form: form(shape, &origin, &axes),
+                form: match form(shape, &origin, &axes) {
+                    Form::Capsule { ends, radius } => {
+                        Form::Capsule { ends, radius: wider * radius }
+                    }
+                    cuboid @ Form::Cuboid { .. } => cuboid,
+                },
                 colour: if depth == 0 { BODY } else { ARM[(depth - 1) % ARM.len()] },
                 opacity: 1.0,
             }));

@@ -65,6 +65,7 @@ pub use export::write_motions;
 pub use export::{ExportError, MotionFormat, Record, intervals, write_motion};
 pub use family::{FamilyName, FamilySpec};
 #[cfg(feature = "film")]
+#[doc(hidden)]
 pub use film::MotionFilm;
 pub use fitness::{Assessment, Reorientation};
 pub use formulation::{Formulated, Formulation};

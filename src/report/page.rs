@@ -36,7 +36,7 @@ pub(super) struct Page<'a> {
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 /// One module, in this order.
-const SCRIPTS: [&str; 9] = [
+const SCRIPTS: [&str; 10] = [
     include_str!("script/data.js"),
     include_str!("script/tables.js"),
     include_str!("script/figures.js"),
