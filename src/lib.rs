@@ -132,6 +132,7 @@ mod figure;
 mod output;
 #[cfg(feature = "harness")]
 mod plot;
+mod words;
 
 /// Jacobians of a free-floating robot (eqs. 1–7).
 pub mod jacobian {

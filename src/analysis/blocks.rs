@@ -4,6 +4,7 @@ use super::pairs::{Pair, pairs};
 use super::statistics::{Friedman, friedman, median};
 use super::ties::settled;
 use crate::experiment::{Plan, Run};
+use crate::words::plural;
 
 /// Level of the tests.
 pub const ALPHA: f64 = 0.05;
@@ -80,10 +81,11 @@ impl Blocks {
         let n = self.costs.len();
         let mut told = match self.unit {
             Unit::Seeds => format!(
-                "Blocks are the {n} seeds of the only instance, so it says nothing about other instances."
+                "Blocks are the seeds of the only instance, {n} in number, so it says nothing about other instances."
             ),
             Unit::Instances => format!(
-                "Blocks are {n} instances, those with the largest budget, each with the median cost over its seeds."
+                "Blocks are {}, those with the largest budget, each with the median cost over its seeds.",
+                plural(n, "instance")
             ),
         };
         told += " Costs that differ by less than searches leave open are taken for the same.";

@@ -7,7 +7,6 @@ use crate::figure::Figure;
 use crate::figure::axis::Axis;
 use crate::figure::marks::{Line, Mark};
 use crate::figure::panel::{MARGIN, Panel, extent, range};
-use crate::figure::style::Stroke;
 use crate::figure::text::printable;
 
 /// A figure with what goes with it in a report.
@@ -35,7 +34,7 @@ impl Chart {
         lines: &[(&str, Vec<[f64; 2]>)],
     ) -> Self {
         let line = |(i, (name, points)): (usize, &(&str, Vec<[f64; 2]>))| {
-            Line::new(&printable(name), Stroke::of(i), points.clone())
+            Line::of(i, &printable(name), points.clone())
         };
         let lines: Vec<Line> = lines.iter().enumerate().map(line).collect();
         let abscissae = lines.iter().flat_map(|line| line.points.iter().map(|[x, _]| *x));

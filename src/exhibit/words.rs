@@ -1,5 +1,7 @@
 //! Numbers and lists as one reads them.
 
+pub(crate) use crate::words::plural;
+
 /// A cost or a time, to four digits.
 pub(crate) fn number(value: f64) -> String {
     significant(value, 4)
@@ -19,11 +21,6 @@ pub(crate) fn p_value(p: f64) -> String {
 pub(crate) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent.round() == 100.0 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
-}
-
-/// A number of things.
-pub(crate) fn plural(count: usize, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Names as a sentence has them.
@@ -130,6 +127,5 @@ mod tests {
         assert_eq!(any_of(&["a", "b"], 3), "a and b");
         assert_eq!(some_of(&["a", "b"], 3), "a and b");
         assert_eq!(some_of(&["a", "b", "c", "d", "e", "f"], 9), "6 of the 9 others");
-        assert_eq!(plural(1, "run") + &plural(2, "run"), "1 run2 runs");
     }
 }

@@ -10,6 +10,8 @@ pub(crate) struct Axis {
     /// What its ends stand for; the first end is at the left or at the bottom.
     range: [f64; 2],
     scale: Scale,
+    /// Whether values below its lower end are drawn there.
+    pub(crate) is_cut: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -41,7 +43,12 @@ impl Axis {
             if (0.1..1e3).contains(&low.abs()) || low == 0.0 { 0.5 } else { 0.1 * low.abs() };
         let [low, high] = if high > low { [low, high] } else { [low - aside, low + aside] };
         let more = more * (high - low);
-        Self { label: label.to_owned(), range: [low - more, high + more], scale: Scale::Linear }
+        Self {
+            label: label.to_owned(),
+            range: [low - more, high + more],
+            scale: Scale::Linear,
+            is_cut: false,
+        }
     }
 
     /// A logarithmic axis over a range of positive values and a little more on both sides, as a
@@ -52,19 +59,33 @@ impl Axis {
         let (low, high) = (low.log10(), high.log10());
         let more = more * (high - low);
         let range = [low - more, high + more];
-        Self { label: label.to_owned(), range, scale: Scale::Logarithmic }
+        Self { label: label.to_owned(), range, scale: Scale::Logarithmic, is_cut: false }
     }
 
     /// Names, the first at the left or at the bottom.
     pub(crate) fn names(label: &str, names: &[String]) -> Self {
         let names = fitted_apart(names, LONGEST_NAME);
         let range = [-0.5, names.len() as f64 - 0.5];
-        Self { label: label.to_owned(), range, scale: Scale::Names(names) }
+        Self { label: label.to_owned(), range, scale: Scale::Names(names), is_cut: false }
     }
 
     /// The same with ticks at whole numbers alone, where it is linear.
     pub(crate) fn whole(self) -> Self {
         Self { scale: Scale::Whole, ..self }
+    }
+
+    /// Linear over the same range, where it is logarithmic.
+    pub(crate) fn make_linear(&mut self) {
+        if matches!(self.scale, Scale::Logarithmic) {
+            self.range = self.range.map(|end| 10_f64.powf(end).clamp(-LARGEST, LARGEST));
+            self.scale = Scale::Linear;
+            self.is_cut = false;
+        }
+    }
+
+    /// The same with a mark at its lower end, below which values are not drawn in their places.
+    pub(crate) fn cut(self, is_cut: bool) -> Self {
+        Self { is_cut, ..self }
     }
 
     /// The other way round.

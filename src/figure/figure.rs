@@ -3,13 +3,14 @@
 use std::collections::HashSet;
 use std::path::Path;
 
+use plotters::style::RGBColor;
 use resvg::{tiny_skia, usvg};
 use svg2pdf::{ConversionOptions, PageOptions};
 
 use super::error::FigureError;
 use super::panel::{Frame, LINE, Panel};
 use super::sheet::{Anchor, Sheet};
-use super::style::{Stroke, TEXT_PT, Width};
+use super::style::{COLOURS, SHADES, Stroke, TEXT_PT, Width, mix};
 use super::text::{fitted_apart, text_width};
 use crate::output::{create_folder, write_file};
 
@@ -50,6 +51,34 @@ impl Figure {
             3 | 5 | 6 | 9 => Self { width: Width::Page, across: 3, height: 36.0, panels },
             _ => Self { width: Width::Page, across: 4, height: 28.0, panels },
         }
+    }
+
+    /// The same with linear axes instead of logarithmic ones: horizontal ones, vertical ones.
+    pub(crate) fn with_linear_axes(mut self, [across, up]: [bool; 2]) -> Self {
+        for panel in &mut self.panels {
+            if across {
+                panel.x.make_linear();
+            }
+            if up {
+                panel.y.make_linear();
+            }
+        }
+        self
+    }
+
+    /// The same with other colours of lines, points and boxes, also where they are paler or darker.
+    pub(crate) fn recoloured(mut self, of: impl Fn(RGBColor) -> RGBColor) -> Self {
+        let other = |colour: RGBColor| {
+            let mixed = |own: &RGBColor| {
+                let shades = SHADES.iter().find(|(to, share)| mix(*own, *to, *share) == colour);
+                shades.map(|(to, share)| mix(of(*own), *to, *share))
+            };
+            COLOURS.iter().find_map(mixed).unwrap_or_else(|| of(colour))
+        };
+        for mark in self.panels.iter_mut().flat_map(|panel| &mut panel.marks) {
+            mark.recolour(other);
+        }
+        self
     }
 
     /// Writes `NAME.svg`, `NAME.png` and `NAME.pdf` into a folder, made if need be.

@@ -85,14 +85,21 @@ impl Line {
         Self { name: name.to_owned(), stroke, points, marked: Marked::Points }
     }
 
+    /// The `index`-th of several lines that are no optimisers, with a marker here and there, so that a grey copy tells them apart.
+    pub(crate) fn of(index: usize, name: &str, points: Vec<[f64; 2]>) -> Self {
+        let stroke = Stroke::of(index).with_marker(Marker::ALL[index % Marker::ALL.len()]);
+        let marked = Marked::Evenly((index as f64 * 0.382).fract());
+        Self { name: name.to_owned(), stroke, points, marked }
+    }
+
     /// Values at given times.
     pub(crate) fn over_time(
+        index: usize,
         name: &str,
-        stroke: Stroke,
         time: &[f64],
         values: impl Iterator<Item = f64>,
     ) -> Self {
-        Self::new(name, stroke, time.iter().zip(values).map(|(t, v)| [*t, v]).collect())
+        Self::of(index, name, time.iter().zip(values).map(|(t, v)| [*t, v]).collect())
     }
 
     /// A reference at one height.
@@ -149,6 +156,18 @@ impl Mark {
             _ => return None,
         };
         (!name.is_empty()).then_some((name, stroke))
+    }
+
+    /// Gives it another colour.
+    pub(crate) fn recolour(&mut self, of: impl Fn(RGBColor) -> RGBColor) {
+        let colour = match self {
+            Self::Line(Line { stroke, .. })
+            | Self::Points { stroke, .. }
+            | Self::Box { stroke, .. } => &mut stroke.colour,
+            Self::Band { colour, .. } | Self::Area { colour, .. } => colour,
+            Self::Cell { .. } | Self::Note(_) | Self::Label { .. } => return,
+        };
+        *colour = of(*colour);
     }
 
     /// Draws it, given where the axes' values are.

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::error::FigureError;
 use super::marks::{Line, Mark, grid};
 use super::sheet::{Anchor, Place, Sheet};
-use super::style::{INK, Stroke, TEXT_PT};
+use super::style::{INK, PAPER, Stroke, TEXT_PT};
 use super::text::text_width;
 
 /// Height of a line of text \[mm\].
@@ -17,6 +17,8 @@ const MARGIN_TOP: f64 = 1.6;
 const MARGIN_RIGHT: f64 = 3.0;
 /// Room between a text and the edge \[mm\].
 const EDGE: f64 = 0.3;
+/// Where the break of an axis stands, from its lower end \[mm\].
+const BREAK: f64 = 1.0;
 /// Free share of an axis before and behind its lines.
 pub(crate) const MARGIN: f64 = 0.04;
 
@@ -163,6 +165,12 @@ impl Panel {
             sheet.line(&[[left, y(*at)], [left - TICK, y(*at)]], &stroke)?;
             sheet.text(text, [left - TICK - GAP, y(*at)], Anchor::Right)?;
         }
+        if self.x.is_cut {
+            draw_break(sheet, [left + BREAK, bottom], [0.0, 1.0])?;
+        }
+        if self.y.is_cut {
+            draw_break(sheet, [left, bottom - BREAK], [1.0, 0.0])?;
+        }
         let thin = Stroke::plain(INK, 0.12);
         for at in self.x.minor_ticks() {
             sheet.line(&[[x(at), bottom], [x(at), bottom + 0.5 * TICK]], &thin)?;
@@ -184,6 +192,18 @@ impl Panel {
         }
         Ok(())
     }
+}
+
+/// Two slanted strokes over an axis, as its break; `across` is the direction at right angles to the axis.
+fn draw_break(sheet: &Sheet<'_>, [x, y]: Place, [across, up]: [f64; 2]) -> Result<(), FigureError> {
+    let corner =
+        |along: f64, aside: f64| [x + along * up + aside * across, y - along * across - aside * up];
+    let slanted = |along: f64| [corner(along - 0.3, -TICK), corner(along + 0.3, TICK)];
+    let [[a, b], [c, d]] = [-0.35, 0.35].map(slanted);
+    sheet.area(&[a, b, d, c], PAPER, 1.0)?;
+    let stroke = Stroke::plain(INK, 0.2);
+    sheet.line(&[a, b], &stroke)?;
+    sheet.line(&[c, d], &stroke)
 }
 
 /// The smallest and the largest finite ordinate of all lines.

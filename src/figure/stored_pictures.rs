@@ -51,6 +51,21 @@ fn look_as_stored(charts: &[(&str, Figure)]) {
     assert!(changed.is_empty(), "look at {changed:?} in {}", drawn.display());
 }
 
+/// The smallest size of a text in print, lowered and raised parts included \[pt\].
+fn smallest_text(group: &usvg::Group) -> f32 {
+    let of = |node: &usvg::Node| match node {
+        usvg::Node::Group(group) => smallest_text(group),
+        usvg::Node::Text(text) => {
+            let spans = text.chunks().iter().flat_map(usvg::TextChunk::spans);
+            let smallest = spans.map(|span| span.font_size().get()).fold(f32::INFINITY, f32::min);
+            // SVG's lengths are of 96 to an inch, points of 72.
+            smallest * text.abs_transform().get_scale().0 * 0.75
+        }
+        _ => f32::INFINITY,
+    };
+    group.children().iter().map(of).fold(f32::INFINITY, f32::min)
+}
+
 /// All texts, with the bounding boxes of what is seen of them.
 pub(crate) fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
     let of = |node: &usvg::Node| match node {
@@ -71,6 +86,9 @@ fn touch_nothing(charts: &[(&str, Figure)]) {
         let tree = figure.tree().unwrap();
         let texts = texts(tree.root());
         assert!(!texts.is_empty(), "{name} has no text");
+        // Drawing units are a fortieth of a millimetre.
+        let smallest = smallest_text(tree.root());
+        assert!(smallest > 5.95, "{name} has a text of {smallest} pt");
         for (i, (text, a)) in texts.iter().enumerate() {
             let size = tree.size();
             let is_within = a.left() >= 0.0

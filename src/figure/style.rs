@@ -56,6 +56,10 @@ pub(crate) const COLOURS: [RGBColor; 10] = [
 pub(crate) const OUTSIDE_COLOURS: [RGBColor; 4] =
     [RGBColor(136, 34, 85), RGBColor(153, 153, 51), RGBColor(51, 34, 136), RGBColor(102, 37, 6)];
 
+/// What colours are mixed with where lines are paler or darker, and by which share; the first leaves them as they are.
+pub(crate) const SHADES: [(RGBColor, f64); 4] =
+    [(PAPER, 0.0), (PAPER, 0.4), (PAPER, 0.55), (INK, 0.5)];
+
 /// Lengths of dashes and gaps, in turn \[mm\]; none is a solid line.
 pub(crate) type Dashes = &'static [f64];
 

@@ -10,6 +10,7 @@ use super::{
     convergence, critical_difference, dimensions, effect_sizes, final_costs, running_times,
 };
 use crate::analysis::ALPHA;
+use crate::exhibit::words::plural;
 use crate::exhibit::{Chart, Finding, Table};
 use crate::experiment::{Plan, Run};
 use crate::figure::{Figure, FigureError};
@@ -197,7 +198,8 @@ fn notes(plan: &Plan, stored: usize) -> String {
     let uses = plan.optimisers.iter().filter(|entrant| entrant.needs_derivatives);
     let uses: Vec<&str> = uses.map(|entrant| entrant.label.as_str()).collect();
     let notes = [
-        (stored < planned).then(|| format!(" Only {stored} of {planned} runs are stored so far.")),
+        (stored < planned)
+            .then(|| format!(" Only {stored} of {} are stored so far.", plural(planned, "run"))),
         plan.is_uneven().then(|| " Budgets differ within the field.".to_owned()),
         (!uses.is_empty() && uses.len() < plan.optimisers.len())
             .then(|| format!(" Evaluations of {} come with derivatives.", uses.join(", "))),

@@ -7,9 +7,6 @@ use crate::figure::panel::{MARGIN, range};
 /// How far below the largest cost a logarithmic axis goes, as a share: the digits of a double.
 const DEEPEST: f64 = 1e-16;
 
-/// What the legend says of the line at which costs are cut.
-pub(super) const CUT: &str = "zero, or below the axis: drawn on this line";
-
 /// How the costs of a panel are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CostScale {
@@ -44,22 +41,27 @@ impl CostScale {
     /// An axis over the costs.
     pub(super) fn axis(&self, label: &str) -> Axis {
         if self.is_logarithmic {
-            Axis::logarithmic(label, self.range, MARGIN)
+            Axis::logarithmic(label, self.range, MARGIN).cut(self.is_cut)
         } else {
             Axis::linear(label, self.range, MARGIN)
         }
     }
 
+    /// What the legend says of the line at which costs are cut.
+    fn told(&self) -> String {
+        format!("zero or below {:.1e}: drawn on this line", self.range[0])
+    }
+
     /// A line at the lower end of a vertical axis where costs are cut, between two abscissae.
     pub(super) fn cut(&self, ends: [f64; 2]) -> Option<Mark> {
-        self.is_cut.then(|| Mark::Line(Line::level(CUT, self.range[0], ends)))
+        self.is_cut.then(|| Mark::Line(Line::level(&self.told(), self.range[0], ends)))
     }
 
     /// The same of a horizontal axis, between two ordinates.
     pub(super) fn cut_across(&self, ends: [f64; 2]) -> Option<Mark> {
         let at = self.range[0];
         self.is_cut.then(|| {
-            let line = Line::level(CUT, at, ends);
+            let line = Line::level(&self.told(), at, ends);
             Mark::Line(Line { points: ends.map(|end| [at, end]).to_vec(), ..line })
         })
     }

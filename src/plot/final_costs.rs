@@ -121,7 +121,7 @@ fn cost_axis(label: &str, all: impl Iterator<Item = f64> + Clone) -> (Axis, Cost
     let behind = if all.into_iter().any(f64::is_infinite) { FOR_FAILURES } else { 0.0 };
     if scale.is_logarithmic && (scale.is_cut || high / low > WIDE) {
         let high = high * (high / low).powf(behind);
-        (Axis::logarithmic(label, [low, high], MARGIN), scale)
+        (Axis::logarithmic(label, [low, high], MARGIN).cut(scale.is_cut), scale)
     } else {
         let axis = Axis::linear(label, [low, high + behind * (high - low)], MARGIN);
         (axis, CostScale { is_logarithmic: false, is_cut: false, ..scale })

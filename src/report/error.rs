@@ -18,6 +18,14 @@ pub enum ReportError {
     /// A chart could not be drawn or written.
     #[error("{0}")]
     Figure(String),
+    /// These results give no chart of a name.
+    #[error("no chart `{name}` of these results, expected some of {known}")]
+    NoChart {
+        /// The name.
+        name: String,
+        /// The charts that there are.
+        known: String,
+    },
     /// A table could not be made.
     #[error("cannot make a table: {0}")]
     Table(String),

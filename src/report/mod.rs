@@ -4,6 +4,7 @@
 //! other in one module, do what needs a reader's hand: sorting, filtering, downloads, the view of the motion.
 //! The same results give the same page byte for byte.
 
+mod chart_options;
 mod drawing;
 mod embedded;
 mod error;
@@ -11,6 +12,7 @@ mod page;
 mod provenance;
 mod write;
 
+pub use chart_options::{ChartOptions, PALETTES, palette};
 pub use error::ReportError;
 pub use page::motion_page;
 pub use write::{Report, Target, tables, write, write_all};

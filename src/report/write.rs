@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
+use super::chart_options::ChartOptions;
 use super::error::ReportError;
 use super::page::Page;
 use super::provenance::provenance;
@@ -35,6 +36,10 @@ pub struct Report {
     pub findings: Vec<Finding>,
     /// The page; beside it are `tables/` and `figures/`.
     pub page: PathBuf,
+    /// The tables that were written, as CSV; other formats stand beside them.
+    pub tables: Vec<PathBuf>,
+    /// The charts that were written, as PDF; other formats stand beside them.
+    pub figures: Vec<PathBuf>,
     /// How many runs the report that is there shows, where these are more than are stored, and it was left as it was.
     pub kept: Option<usize>,
     /// Stored runs.
@@ -53,17 +58,19 @@ pub struct Target<'a> {
     pub out: &'a Path,
     /// Whether to replace a report there of more runs.
     pub replace: bool,
+    /// Which charts are drawn, and how.
+    pub charts: ChartOptions,
 }
 
 impl<'a> Target<'a> {
     /// Beside the results, unless a report of more runs is there.
     pub fn of(results: &'a Path) -> Self {
-        Self { results: vec![results], out: results, replace: false }
+        Self::of_all(vec![results], results)
     }
 
     /// Of one or several folders of results into another folder.
     pub fn of_all(results: Vec<&'a Path>, out: &'a Path) -> Self {
-        Self { results, out, replace: false }
+        Self { results, out, replace: false, charts: ChartOptions::default() }
     }
 
     /// Also in place of a report of more runs.
@@ -96,10 +103,12 @@ pub fn write_all(
     let mut findings = analysis.findings(&own);
     findings.extend(plot::left_out(plan, &runs));
     let path = folder.join(PAGE);
+    let (mut tables_written, mut figures_written) = (Vec::new(), Vec::new());
     if kept.is_none() {
         let mut tables = analysis.tables(own.tables)?;
         let mut charts = plot::charts(plan, &tables, runs.len(), own.leading_charts)?;
         charts.extend(own.charts);
+        let charts = target.charts.applied(charts)?;
         tables.extend(own.chart_tables);
         write_tables(&tables, &own.table_names, &folder.join(TABLES_FOLDER))?;
         write_charts(&charts, &own.chart_names, &folder.join(FIGURES_FOLDER))?;
@@ -121,12 +130,19 @@ pub fn write_all(
             remove_temporary(folder);
         }
         write_file(&path, page.html()?.as_bytes())?;
+        let table = |table: &Table| folder.join(TABLES_FOLDER).join(format!("{}.csv", table.name));
+        tables_written = tables.iter().map(table).collect();
+        let figure =
+            |chart: &Chart| folder.join(FIGURES_FOLDER).join(format!("{}.pdf", chart.name));
+        figures_written = charts.iter().map(figure).collect();
     }
     Ok(Report {
         summary,
         lines: own.lines,
         findings,
         page: path,
+        tables: tables_written,
+        figures: figures_written,
         kept,
         stored: runs.len(),
         failed: failures(&runs),

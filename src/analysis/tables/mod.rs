@@ -19,6 +19,7 @@ use polars::prelude::*;
 use super::grouped::Analysis;
 use super::summary::summary;
 use crate::exhibit::Table;
+use crate::words::plural;
 
 /// The names that every experiment's tables may have.
 pub const NAMES: [&str; 17] = [
@@ -68,7 +69,7 @@ impl Analysis<'_> {
         let (stored, planned) = (self.runs.len(), self.plan.runs.len());
         let mut note = String::new();
         if stored < planned {
-            note = format!(" Only {stored} of {planned} runs are stored so far.");
+            note = format!(" Only {stored} of {} are stored so far.", plural(planned, "run"));
         }
         if self.plan.optimisers.iter().any(|entrant| entrant.imported().is_some()) {
             note += " Runs of imported optimisers are as their own programs evaluated them.";

@@ -87,7 +87,8 @@ impl<'a> Standings<'a> {
         let names = list(&self.names(first.iter().copied()));
         let is = if first.len() == 1 { "has" } else { "are level: they share" };
         let told = format!(
-            "{names} {is} the lowest mean rank, {rank} among {count} optimisers over {over}."
+            "{names} {is} the lowest mean rank, {rank} among {} over {over}.",
+            plural(count, "optimiser")
         );
         format!("{told} {}", self.who_else(first, others))
     }

@@ -75,7 +75,7 @@ fn many(
     let count = |o: usize| times[o].iter().filter(|time| time.is_finite()).count();
     let others: Vec<usize> = (0..times.len()).filter(|&o| o != winner).collect();
     let all = times[winner].len();
-    let mut by = vec![format!("on {} of {all} instances by {name}", count(winner))];
+    let mut by = vec![format!("on {} of {} by {name}", count(winner), plural(all, "instance"))];
     if others.len() <= MOST_TOLD {
         by.extend(others.iter().map(|&o| format!("on {} by {}", count(o), analysis.optimiser(o))));
     } else {

@@ -18,7 +18,7 @@ pub(super) fn base_attitude(motion: &Motion, task: &Task) -> Figure {
     let mut lines: Vec<Line> = Vec::new();
     for (k, name) in ["yaw ψ", "pitch ϑ", "roll φ"].into_iter().enumerate() {
         let values = angles.iter().map(|zyx| zyx[k].to_degrees());
-        lines.push(Line::over_time(name, Stroke::of(k), &motion.time, values));
+        lines.push(Line::over_time(k, name, &motion.time, values));
     }
     for (i, angle) in goals.into_iter().enumerate() {
         lines.push(Line::level(if i == 0 { "goal" } else { "" }, angle, [0.0, end]));
@@ -28,7 +28,7 @@ pub(super) fn base_attitude(motion: &Motion, task: &Task) -> Figure {
         let stroke = Stroke::of(3);
         let dotted = Stroke { dashes: Stroke::reference().dashes, ..stroke };
         let turns = motion.base.iter().map(|base| task.path.turn_at(task, base).to_degrees());
-        lines.push(Line::over_time("turn", stroke, &motion.time, turns));
+        lines.push(Line::over_time(3, "turn", &motion.time, turns));
         lines.push(Line::new("its limit", dotted, vec![[0.0, limit], [end, limit]]));
         label = "base angle [°]";
     }

@@ -6,6 +6,7 @@ use super::sweeps::{MOST_PANELS, Swept, points, sweep, varies};
 use super::words::AT_GOAL_DEG;
 use crate::exhibit::words::list;
 use crate::exhibit::{Chart, Finding};
+use crate::experiment::Instance;
 use crate::reorientation::best_known::BestKnown;
 
 /// The names that the charts may have.
@@ -29,24 +30,24 @@ pub(super) const NAMES: [&str; 16] = [
 ];
 
 /// A chart for each setting that varies, and one of what each weight trades; and what is said of those that are left out.
-pub(super) fn charts(best: &[BestMotion<'_>]) -> (Vec<Chart>, Option<Finding>) {
+pub(super) fn charts(
+    best: &[BestMotion<'_>],
+    instances: &[Instance],
+) -> (Vec<Chart>, Option<Finding>) {
     let bound = best.iter().filter_map(|m| BestKnown::of(m.problem)).find_map(|k| k.free_form_j);
     let (mut charts, mut left_out) = (Vec::new(), Vec::new());
     for swept in Swept::ALL {
-        let points = points(best, swept);
+        let points = points(best, instances, swept);
         let (name, title, caption) = texts_of(swept);
         let Some(figure) = sweep(&points, swept, bound) else {
             left_out.extend(varies(&points).then_some(name));
             continue;
         };
-        let joined = match swept {
-            Swept::Terms | Swept::Pieces => "",
-            Swept::WeightBase => ", and joined to none that reaches it",
-            _ => ", and joined to no other",
-        };
         let caption = format!(
-            "{caption} Motions that end more than {AT_GOAL_DEG}° off the goal are hollow{joined}. Of several poses \
-             each has a thin line."
+            "{caption} Motions that end more than {AT_GOAL_DEG}° off the goal are hollow. A line joins neighbouring values that \
+             both reach the goal with motions of one branch: at no time is a joint of one further from where it is in the other \
+             than a quarter of the largest travel of a joint. Elsewhere, and where a value between gave no motion, there is a \
+             gap. With several poses, each pose has a thin line."
         );
         let (name, title) = (name.to_owned(), title.to_owned());
         charts.push(Chart { name, title, caption, table: "best".into(), figure });
@@ -81,69 +82,69 @@ fn texts_of(swept: Swept) -> (&'static str, &'static str, &'static str) {
         Swept::RateLimit => (
             "rate-sweep",
             "Limit on rates",
-            "Duration of the best motion against the limit on rates.",
+            "Duration and residual of the best motion against the limit on rates.",
         ),
         Swept::AccelerationLimit => (
             "acceleration-sweep",
             "Limit on accelerations",
-            "Duration of the best motion against the limit on accelerations.",
+            "Duration and residual of the best motion against the limit on accelerations.",
         ),
         Swept::JerkLimit => (
             "jerk-sweep",
             "Limit on jerks",
-            "Duration of the best motion against the limit on jerks. The dotted line, where there is one, is the \
+            "Duration and residual of the best motion against the limit on jerks. The dotted line, where there is one, is the \
              law that holds while jerk alone limits the motion, from the lowest limit on at which the goal is reached.",
         ),
         Swept::TurnLimit => (
             "turn-sweep",
             "Limit on turns of the base",
-            "Duration of the best motion against the limit on turns of the base.",
+            "Duration and residual of the best motion against the limit on turns of the base.",
         ),
         Swept::Cone => (
             "cone-sweep",
             "Angle of the cone",
-            "Duration of the best motion against the angle of the cone.",
+            "Duration and residual of the best motion against the angle of the cone.",
         ),
         Swept::BaseRateLimit => (
             "base-rate-sweep",
             "Limit on rates of the base",
-            "Duration of the best motion against the limit on rates of the base.",
+            "Duration and residual of the best motion against the limit on rates of the base.",
         ),
         Swept::ToolSpeedLimit => (
             "tool-speed-sweep",
             "Limit on speeds of the tool",
-            "Duration of the best motion against the limit on speeds of the tool.",
+            "Duration and residual of the best motion against the limit on speeds of the tool.",
         ),
         Swept::TorqueLimit => (
             "torque-sweep",
             "Limit on torques",
-            "Duration of the best motion against the limit on torques.",
+            "Duration and residual of the best motion against the limit on torques.",
         ),
         Swept::Clearance => (
             "clearance-sweep",
             "Clearance",
-            "Duration of the best motion against the clearance asked for.",
+            "Duration and residual of the best motion against the clearance asked for.",
         ),
         Swept::WeightLargestTurn => (
             "largest-turn-weight-sweep",
             "Weight of the largest turn",
-            "Largest turn of the base and duration of the best motion against the weight of the largest turn.",
+            "Largest turn of the base, duration and residual of the best motion against the weight of the largest turn.",
         ),
         Swept::WeightMeanTurn => (
             "mean-turn-weight-sweep",
             "Weight of the mean turn",
-            "Largest turn of the base and duration of the best motion against the weight of the mean turn.",
+            "Largest turn of the base, duration and residual of the best motion against the weight of the mean turn.",
         ),
         Swept::Terms => (
             "terms-sweep",
             "Number of terms",
-            "Cost of the best motion against the number of free coefficients per joint. The dotted line, where there is one, \
+            "Cost, duration and residual of the best motion against the number of free coefficients per joint. The dotted line, where there is one, \
              is the least cost found for motions of any shape, of piecewise constant jerk.",
         ),
         Swept::Pieces => (
             "pieces-sweep",
             "Number of pieces",
-            "Cost of the best motion against the number of pieces of a spline.",
+            "Cost, duration and residual of the best motion against the number of pieces of a spline.",
         ),
     }
 }

@@ -4,7 +4,6 @@ use crate::figure::Figure;
 use crate::figure::axis::Axis;
 use crate::figure::marks::{Line, Mark};
 use crate::figure::panel::{MARGIN, Panel, extent};
-use crate::figure::style::Stroke;
 use crate::figure::text::printable;
 use crate::reorientation::motion::Motion;
 use crate::robot::JointKind;
@@ -39,7 +38,7 @@ pub(super) fn joint_panel(
     let end = motion.time.last().copied().unwrap_or(1.0);
     for (i, joint) in motion.joints.iter().enumerate().filter(|(_, joint)| joint.kind == kind) {
         let values = joint.derivatives.iter().map(|d| kind.to_file_units(d[order]));
-        lines.push(Line::over_time(&printable(&joint.name), Stroke::of(i), &motion.time, values));
+        lines.push(Line::over_time(i, &printable(&joint.name), &motion.time, values));
     }
     for limit in limits.iter().flat_map(|limit| [-limit, *limit]) {
         let name = if limits.first() == Some(&-limit) { "limit" } else { "" };

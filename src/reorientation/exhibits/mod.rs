@@ -41,7 +41,7 @@ const MOST_TOLD: usize = 24;
 /// All that there is to show of the tasks of a plan.
 pub(super) fn exhibits(results: &Results<'_>) -> Exhibits {
     let best = best_motions(results);
-    let (leading_charts, left_out) = charts::charts(&best);
+    let (leading_charts, left_out) = charts::charts(&best, results.instances);
     let mut exhibits = Exhibits {
         sweep: sweep_finding::finding(&best),
         quality: quality::finding(results, &best),

@@ -15,7 +15,8 @@ pub(super) fn on_the_way(motion: &Motion, task: &Task) -> Option<Figure> {
     let end = motion.time.last().copied().unwrap_or(1.0);
     let panel = |(index, limited): (usize, &Limited)| {
         let Limited { name, unit, limit, is_least, values, .. } = limited;
-        let line = Line::over_time("", Stroke::of(0), &motion.time, values.iter().copied());
+        let points = motion.time.iter().zip(values).map(|(time, value)| [*time, *value]);
+        let line = Line::new("", Stroke::of(0), points.collect());
         let bound = if *is_least { "least" } else { "limit" };
         let told = if index == 0 || *is_least { bound } else { "" };
         let lines = vec![line, Line::level(told, *limit, [0.0, end])];

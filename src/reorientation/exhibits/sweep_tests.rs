@@ -1,6 +1,6 @@
 //! Charts of sweeps, from points made by hand.
 
-use super::sweeps::{Point, Swept, sweep as sweep_chart};
+use super::sweeps::{Point, Shape, Swept, sweep as sweep_chart};
 use crate::figure::Figure;
 use crate::figure::marks::Mark;
 use crate::figure::stored_pictures::texts;
@@ -14,6 +14,8 @@ fn points(setting: &[f64]) -> Vec<Point> {
         residual_deg: if value < 0.15 { 29.0 } else { 0.0 },
         duration: 7.8 * (value / 80.0).powf(-1.0 / 3.0).max(0.6),
         turn_deg: 30.0 - 4.0 * value,
+        shape: Shape::default(),
+        follows_failure: false,
     };
     setting.iter().map(point).collect()
 }
@@ -35,6 +37,8 @@ pub(super) fn missed(others: &[String], pose: &str, times: f64) -> Vec<Point> {
         residual_deg,
         duration: times * duration,
         turn_deg: f64::NAN,
+        shape: Shape::default(),
+        follows_failure: false,
     };
     MISSED.map(point).to_vec()
 }
@@ -78,15 +82,30 @@ fn what_misses_the_goal_is_not_joined() {
     let texts = texts(figure.tree().unwrap().root());
     assert!(texts.iter().any(|(text, _)| text == "goal missed by more than 0.01°"), "{texts:?}");
     let reached = swept(Swept::JerkLimit, &[80.0, 160.0], None);
-    assert_eq!(reached.panels.len(), 1);
+    assert_eq!(reached.panels[1].y.label, "residual [°]");
+}
+
+/// A quarter of the largest travel of a joint, which is two radians, is half a radian.
+#[test]
+fn lines_have_gaps_at_other_branches_and_failures() {
+    let settings = [40.0, 80.0, 160.0, 320.0];
+    let mut points = points(&settings);
+    let joined_in =
+        |points: &[Point]| joined(&sweep_chart(points, Swept::RateLimit, None).unwrap());
+    for (point, middle) in points.iter_mut().zip([0.0, 0.4, 1.0, 1.4]) {
+        point.shape = Shape([vec![vec![0.0, middle, 2.0]], Vec::new()]);
+    }
+    assert_eq!(joined_in(&points), [[40.0, 80.0], [160.0, 320.0]]);
+    points[3].follows_failure = true;
+    assert_eq!(joined_in(&points), [[40.0, 80.0]]);
 }
 
 #[test]
-fn two_settings_have_a_panel_for_each_value_of_one() {
+fn two_settings_have_two_panels_for_each_value_of_one() {
     let figure = sweep_chart(&two_settings(), Swept::JerkLimit, None).unwrap();
     let titles: Vec<&str> = figure.panels.iter().map(|panel| panel.title.as_str()).collect();
     assert_eq!(titles[..2], ["rate ≤ 10 °/s", "rate ≤ 20 °/s"]);
-    assert_eq!(titles.iter().filter(|title| !title.is_empty()).count(), 10);
+    assert_eq!(titles.iter().filter(|title| !title.is_empty()).count(), 20);
 }
 
 /// Of two poses that take 1.1 and 1.2 times as long.

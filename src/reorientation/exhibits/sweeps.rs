@@ -12,6 +12,7 @@ use crate::figure::panel::{MARGIN, Panel, range};
 use crate::figure::style::{INK, Marker, PAPER, Stroke, mix};
 use crate::reorientation::sweep::{shown, title};
 use crate::reorientation::symbols::{K_B, T_F};
+use crate::robot::JointKind;
 
 /// A setting that can be swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,6 +128,45 @@ pub(super) struct Point {
     pub(super) duration: f64,
     /// Largest turn of the base \[°\]; NaN where it was not stored.
     pub(super) turn_deg: f64,
+    /// What the joints do.
+    pub(super) shape: Shape,
+    /// Whether a lower value of the setting gave no motion, and the next lower one that did is below it.
+    pub(super) follows_failure: bool,
+}
+
+/// What the joints of a motion do, whatever its duration: the positions of those that turn and of those that slide, each joint
+/// at equal shares of the time.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Shape(pub(super) [Vec<Vec<f64>>; 2]);
+
+/// Intervals at which shapes are compared.
+const SHAPE_INTERVALS: usize = 32;
+/// Motions whose joints are further apart than this share of the largest travel of a joint are of different branches.
+const SAME_BRANCH: f64 = 0.25;
+
+impl Shape {
+    fn of(motion: &BestMotion<'_>) -> Self {
+        let sampled = motion.sample(SHAPE_INTERVALS);
+        let of_kind = |kind: JointKind| {
+            let own = sampled.joints.iter().filter(|joint| joint.kind == kind);
+            own.map(|joint| joint.derivatives.iter().map(|d| d[0]).collect()).collect()
+        };
+        Self([JointKind::Revolute, JointKind::Prismatic].map(of_kind))
+    }
+
+    /// Whether two motions are of one branch of solutions: at no time is a joint of one further from where it is in the other
+    /// than a quarter of the largest travel of a joint of its kind.
+    fn is_near(&self, other: &Self) -> bool {
+        self.0.iter().zip(&other.0).all(|(own, other)| {
+            let travel = |joint: &Vec<f64>| {
+                let [low, high] = range(joint.iter().copied(), f64::NEG_INFINITY);
+                high - low
+            };
+            let travel = own.iter().chain(other).map(travel).fold(0.0, f64::max);
+            let pairs = own.iter().zip(other).flat_map(|(own, other)| own.iter().zip(other));
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) <= SAME_BRANCH * travel
+        })
+    }
 }
 
 impl Point {
@@ -134,19 +174,46 @@ impl Point {
     fn misses(&self) -> bool {
         self.residual_deg > AT_GOAL_DEG
     }
+
+    /// Whether a line joins it to the one before: both reach the goal, no value between them is without a motion, and the two
+    /// motions are of one branch of solutions.
+    fn is_joined_to(&self, before: &Self) -> bool {
+        let reach = !self.misses() && !before.misses();
+        reach && !self.follows_failure && self.shape.is_near(&before.shape)
+    }
 }
 
 /// The setting that tells tasks of one group apart.
 const POSE: &str = "pose";
 
 /// The best motions at the values of a setting, those that have one.
-pub(super) fn points(best: &[BestMotion<'_>], swept: Swept) -> Vec<Point> {
+pub(super) fn points(best: &[BestMotion<'_>], instances: &[Instance], swept: Swept) -> Vec<Point> {
+    let place = |instance: &Instance| {
+        let pose = instance.coordinate(POSE).map_or_else(String::new, shown);
+        let setting = instance.coordinate(swept.name())?.real()?;
+        Some((others(instance, &[swept.name(), POSE]), pose, setting))
+    };
+    let places: Vec<_> = instances.iter().filter_map(place).collect();
+    // Where there is more than one best motion of a place, as of several experiments, it counts as found.
+    let found: Vec<_> = best.iter().filter_map(|motion| place(motion.instance)).collect();
+    let failed: Vec<_> = places.iter().filter(|place| !found.contains(place)).collect();
+    let follows_failure = |(others, pose, setting): &(Vec<String>, String, f64)| {
+        let is_like = |other: &&(Vec<String>, String, f64)| &other.0 == others && &other.1 == pose;
+        let below = found.iter().filter(is_like).map(|other| other.2).filter(|v| v < setting);
+        let below = below.fold(f64::NEG_INFINITY, f64::max);
+        let mut failed = failed.iter().copied().filter(is_like);
+        failed.any(|other| below < other.2 && other.2 < *setting)
+    };
     let point = |motion: &BestMotion<'_>| {
-        let own = others(motion.instance, &[swept.name(), POSE]);
+        let place = place(motion.instance)?;
+        let follows_failure = follows_failure(&place);
+        let (others, pose, setting) = place;
         let point = Point {
-            others: own,
-            pose: motion.instance.coordinate(POSE).map_or_else(String::new, shown),
-            setting: motion.instance.coordinate(swept.name())?.real()?,
+            others,
+            pose,
+            setting,
+            shape: Shape::of(motion),
+            follows_failure,
             cost: motion.run.cost,
             residual_deg: motion.residual_deg,
             duration: motion.duration,
@@ -269,10 +336,9 @@ struct Drawing<'a> {
     names: Vec<&'a str>,
 }
 
-/// The best motions over one setting: over the weight of the base residual and duration, over
-/// a limit the duration, over the number of terms or pieces the cost. Motions that miss the goal are hollow; durations are
-/// joined where the goal is reached, and where it is not, a second panel has the residual. None where the setting does not
-/// vary, or other settings give too many combinations.
+/// The best motions over one setting: residual and duration, over a weight of turns the largest turn as well, over the number of
+/// terms or pieces the cost as well. Motions that miss the goal are hollow. Lines join neighbours of one branch, see
+/// [`Point::is_joined_to`]. None where the setting does not vary, or other settings give too many combinations.
 ///
 /// Over jerk limits a reference tells what follows while jerk alone limits the motion, `t_f ∝ j̄^(−1/3)`. `bound` is the
 /// least cost whatever the number of terms, where it is known.
@@ -288,14 +354,13 @@ pub(super) fn sweep(points: &[Point], swept: Swept, bound: Option<f64>) -> Optio
     let drawing = Drawing { points, swept, names };
     let ordinates: &[Ordinate] = match swept {
         Swept::WeightBase => &[Ordinate::Residual, Ordinate::Duration],
-        Swept::Terms | Swept::Pieces => &[Ordinate::Cost],
+        Swept::Terms | Swept::Pieces => &[Ordinate::Cost, Ordinate::Duration, Ordinate::Residual],
         Swept::WeightLargestTurn | Swept::WeightMeanTurn
             if points.iter().all(|point| point.turn_deg.is_finite()) =>
         {
-            &[Ordinate::Turn, Ordinate::Duration]
+            &[Ordinate::Turn, Ordinate::Duration, Ordinate::Residual]
         }
-        _ if points.iter().any(Point::misses) => &[Ordinate::Duration, Ordinate::Residual],
-        _ => &[Ordinate::Duration],
+        _ => &[Ordinate::Duration, Ordinate::Residual],
     };
     if let [facet] = &facets[..] {
         let mut reference = match (swept, &combinations[..]) {
@@ -311,9 +376,7 @@ pub(super) fn sweep(points: &[Point], swept: Swept, bound: Option<f64>) -> Optio
         let height = if panels.len() > 1 { 30.0 } else { 44.0 };
         return Some(Figure::column(panels, height));
     }
-    // Rows of panels for the one ordinate, then for the other; of many the hollow marks have to do.
-    let is_large = facets.len() > 2 * ACROSS && swept != Swept::WeightBase;
-    let ordinates = if is_large { &ordinates[..1] } else { ordinates };
+    // Rows of panels for the one ordinate, then for the next.
     let across = facets.len().min(ACROSS);
     let mut panels: Vec<Panel> = Vec::new();
     for ordinate in ordinates {
@@ -375,18 +438,11 @@ impl Drawing<'_> {
         let full = Stroke::of(look).with_marker(Marker::ALL[look % Marker::ALL.len()]);
         let pale = mix(full.colour, PAPER, 0.4);
         let stroke = if own.is_posed() { Stroke::plain(pale, 0.12) } else { full };
-        let joins = |a: &Point, b: &Point| match (ordinate, self.swept) {
-            (Ordinate::Cost, _) => true,
-            // Where the weight is too small the motions are others than where it is large enough.
-            (_, Swept::WeightBase) => a.misses() == b.misses(),
-            (Ordinate::Residual, _) => false,
-            (Ordinate::Duration | Ordinate::Turn, _) => !a.misses() && !b.misses(),
-        };
         let place = |point: &Point| [point.setting, ordinate.of(point)];
         let mut marks = Vec::new();
         let mut told = name;
         for pose in &own.poses {
-            for piece in pose.chunk_by(|a, b| joins(a, b)) {
+            for piece in pose.chunk_by(|a, b| b.is_joined_to(a)) {
                 let points = piece.iter().map(|point| place(point)).collect();
                 let name = if own.is_posed() { "" } else { std::mem::take(&mut told) };
                 marks.push(Mark::Line(Line::new(name, stroke, points)));
@@ -400,19 +456,20 @@ impl Drawing<'_> {
         }
         if own.is_posed() {
             marks.push(Mark::Note("thin: single poses".to_owned()));
-            marks.extend(median_line(name, own, ordinate, full));
+            marks.extend(median_line(name, own, ordinate, full).into_iter().flatten());
         }
         marks
     }
 }
 
-/// The median over the poses that reach the goal at every value of the setting; of costs over all.
+/// The median over the poses that reach the goal at every value of the setting; of costs and residuals over all. Its pieces join
+/// neighbours that are joined in every pose.
 fn median_line(
     name: &str,
     own: &Combination<'_>,
     ordinate: Ordinate,
     stroke: Stroke,
-) -> Option<Mark> {
+) -> Option<Vec<Mark>> {
     let most = own.poses.iter().map(Vec::len).max()?;
     let counts = |pose: &&Vec<&Point>| {
         let compares = matches!(ordinate, Ordinate::Cost | Ordinate::Residual);
@@ -424,17 +481,21 @@ fn median_line(
         pose.iter().zip(first).all(|(point, other)| point.setting == other.setting)
     };
     let poses: Vec<_> = own.poses.iter().filter(counts).filter(same_settings).collect();
-    let points = first.iter().enumerate().map(|(i, point)| {
+    let places: Vec<usize> = (0..first.len()).collect();
+    let joined =
+        |&before: &usize, &i: &usize| poses.iter().all(|pose| pose[i].is_joined_to(pose[before]));
+    let point = |&i: &usize| {
         let values = poses.iter().map(|pose| ordinate.of(pose[i])).collect();
-        [point.setting, median(values)]
-    });
+        [first[i].setting, median(values)]
+    };
+    let pieces = places.chunk_by(joined).map(|piece| piece.iter().map(point).collect());
     let throughout = match ordinate {
         Ordinate::Duration | Ordinate::Turn => " that reach the goal throughout",
         _ => "",
     };
     let before = if name.is_empty() { String::new() } else { format!("{name}: ") };
     let told = format!("{before}median of {}{throughout}", plural(poses.len(), "pose"));
-    Some(Mark::Line(Line::new(&told, stroke, points.collect())))
+    Some(pieces.map(|points| Mark::Line(Line::new(&told, stroke, points))).collect())
 }
 
 /// `t_f ∝ j̄^(−1/3)` over the motions that reach the goal, from the lowest limit on.
