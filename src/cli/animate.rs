@@ -10,7 +10,8 @@ use clap::Args;
 
 use super::progress::Bar;
 use super::replay::TrajectoryOptions;
-use super::{CliError, read_or, start_worker_threads, warn_of, watch};
+use super::kind::Kind;
+use super::{CliError, read_or, start_worker_threads, watch};
 use crate::film::{Film, FilmFormat, Size, View, write_film};
 use crate::output::{check_folder_writable, check_writable};
 use crate::reorientation::{GivenTrajectory, Motion, MotionFilm, Published, ReplayFile, Replayed};
@@ -76,8 +77,7 @@ impl Animate {
             Some(folder) if folder.is_dir() => self.draw_best(folder, format),
             Some(file) if GivenTrajectory::has_name(file) => {
                 self.check_instance()?;
-                let (task, trajectory) = self.reading.read(file, "animate")?;
-                warn_of(&task.robot);
+                let (task, trajectory) = self.reading.read(file)?;
                 let replayed = Replayed::new(&task, &trajectory.points);
                 let duration = trajectory.points.duration();
                 self.draw(&task, duration, format, |intervals| replayed.sample(intervals))
@@ -90,10 +90,9 @@ impl Animate {
             file => {
                 self.check_instance()?;
                 self.reading.check_unused()?;
-                let document = read_or(file, ReplayFile::paper)?;
+                let document = read_or(file, Kind::Motion, ReplayFile::paper)?;
                 let published = ReplayFile::read(&document)?.build(&document)?;
                 let Published { problem, coefficients, duration, .. } = &published;
-                warn_of(&problem.task().robot);
                 let sample = |intervals| problem.sample(coefficients, *duration, intervals);
                 self.draw(problem.task(), *duration, format, sample)
             }

@@ -1,129 +1,146 @@
 //! `driftless check`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 #[cfg(feature = "harness")]
 use std::time::Duration;
 
 use clap::Args;
 use serde::Serialize;
+use serde_json::{Map, Value, json};
 
-use super::{CliError, read_robot_or, warn_of};
-use crate::input::{Document, InputError};
+use super::kind::{self, Kind};
+use super::{CliError, say_json, shipped, warn_of};
+use crate::input::Document;
 use crate::reorientation::{ReplayFile, TaskFile};
 use crate::robot::{Robot, RobotFile, ShapeSource};
+use crate::words::plural;
 
-/// Say what is wrong with an input file, or print it resolved
+/// Validate an input file and print it with every default filled in
 #[derive(Debug, Args)]
 pub(super) struct Check {
-    /// A task, robot, replay or experiment file, or a URDF
+    /// Task, robot, motion or experiment file, or a URDF
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Do not measure how long an experiment takes
+    /// Do not estimate how long an experiment takes
     #[arg(long)]
     no_estimate: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
 }
 
-/// What a file is, told by its top-level keys.
-enum Kind {
-    Robot,
-    Replay,
-    Experiment,
-    Task,
+/// What there is to say of a file that is as it should be.
+struct Checked {
+    kind: &'static str,
+    /// The file with every default filled in, in TOML.
+    resolved: String,
+    /// For people, below it.
+    remarks: Vec<String>,
+    /// For programs, beside it.
+    facts: Map<String, Value>,
 }
 
-/// Keys that only an experiment has.
-const EXPERIMENT_KEYS: [&str; 7] =
-    ["name", "optimiser", "seeds", "budget", "sweep", "targets", "functions"];
-
-impl Kind {
-    fn of(document: &Document) -> Result<Self, InputError> {
-        let has = |keys: &[&str]| -> Result<bool, InputError> {
-            keys.iter().try_fold(false, |found, key| Ok(found || document.key(key)?.is_some()))
-        };
-        Ok(if document.is_xml() || has(&["joint", "base", "link", "urdf", "arm"])? {
-            Self::Robot
-        } else if has(&["motion"])? {
-            Self::Replay
-        } else if has(&EXPERIMENT_KEYS)? {
-            Self::Experiment
-        } else {
-            Self::Task
-        })
+impl Checked {
+    fn new(kind: &'static str, file: &impl Serialize) -> Result<Self, CliError> {
+        let resolved = toml::to_string(file)?;
+        Ok(Self { kind, resolved, remarks: Vec::new(), facts: Map::new() })
     }
-}
 
-/// Whether a file that is read as a task is one.
-pub(super) fn expect_task(document: &Document, verb: &str) -> Result<(), CliError> {
-    let found = match Kind::of(document)? {
-        Kind::Task => return Ok(()),
-        Kind::Robot => "a robot",
-        Kind::Replay => "a motion to replay",
-        Kind::Experiment => "an experiment",
-    };
-    Err(CliError::Usage {
-        message: format!("{} is {found}, and `{verb}` takes a task", document.path.display()),
-        help: (found == "a robot").then(|| {
-            let robot = document.path.display();
-            format!(
-                "a task names it: `[task]` with `robot = \"{robot}\"`, a start, a goal and limits"
-            )
-        }),
-    })
-}
+    fn with(mut self, key: &str, value: impl Into<Value>) -> Self {
+        self.facts.insert(key.to_owned(), value.into());
+        self
+    }
 
-impl Check {
-    pub(super) fn execute(self) -> Result<(), CliError> {
-        let document = read_robot_or(&self.file)?;
-        match Kind::of(&document)? {
-            Kind::Robot => {
-                let file = RobotFile::read(&document)?;
-                if let Some(root) = file.root_without_mass() {
-                    print_resolved("robot", &file)?;
-                    if let Some(meshes) = words_for_meshes(&file) {
-                        say!("\n{meshes}");
-                    }
-                    note!(
-                        "note: `{root}`, the root of the robot, has no mass; a task gives it a base by `[task.base]`"
-                    );
-                    return Ok(());
-                }
-                let robot = file.build(&document)?;
-                print_resolved("robot", &file)?;
-                say!("\n{}", words_for_shapes(&robot));
-                if let Some(meshes) = words_for_meshes(&file) {
-                    say!("{meshes}");
-                }
-                warn_of(&robot);
-            }
-            Kind::Replay => {
-                let file = ReplayFile::read(&document)?;
-                warn_of(&file.build(&document)?.problem.task().robot);
-                print_resolved("motion to replay", &file)?;
-            }
-            Kind::Task => {
-                let file = TaskFile::read(&document)?.planned();
-                let problem = if file.task.is_mission() {
-                    let mission = file.task.mission(&document)?;
-                    file.trajectory.build(Arc::new(mission.ends), &document)?
-                } else {
-                    file.problem(&document)?
-                };
-                warn_of(&problem.task().robot);
-                print_resolved("task", &file.resolved(&problem))?;
-            }
-            Kind::Experiment => check_experiment(&document, !self.no_estimate)?,
+    fn json(self, file: &Path) -> Result<Value, CliError> {
+        let unreadable = |error: toml::de::Error| CliError::Resolved(error.to_string());
+        let resolved: Value = toml::from_str(&self.resolved).map_err(unreadable)?;
+        let mut json = json!({ "file": file.display().to_string(), "kind": self.kind });
+        if let Some(json) = json.as_object_mut() {
+            json.extend(self.facts);
+            json.insert("resolved".to_owned(), resolved);
+        }
+        Ok(json)
+    }
+
+    fn say(&self) -> Result<(), CliError> {
+        say!("# {}, with every default filled in", self.kind);
+        say!("{}", self.resolved.trim_end());
+        if !self.remarks.is_empty() {
+            say!("\n# {}", self.remarks.join("\n# "));
         }
         Ok(())
     }
 }
 
+impl Check {
+    pub(super) fn execute(self) -> Result<(), CliError> {
+        let document = if let Some((_, document)) = shipped(&self.file) {
+            document
+        } else {
+            kind::refuse_others(&self.file, Kind::Task)?;
+            Document::read(&self.file)?
+        };
+        let checked = match Kind::of(&document)? {
+            Some(Kind::Robot) => check_robot(&document)?,
+            Some(Kind::Motion) => {
+                let file = ReplayFile::read(&document)?;
+                warn_of(&file.build(&document)?.problem.task().robot);
+                Checked::new("motion to replay", &file)?
+            }
+            Some(Kind::Experiment) => check_experiment(&document, !self.no_estimate)?,
+            _ => check_task(&document)?,
+        };
+        if self.json { say_json(&checked.json(&self.file)?) } else { checked.say() }
+    }
+}
+
+fn check_robot(document: &Document) -> Result<Checked, CliError> {
+    let file = RobotFile::read(document)?;
+    let mut checked = Checked::new("robot", &file)?;
+    let (meshes, links) = file.links_with_meshes_alone();
+    let meshes_told = words_for_meshes(meshes, links);
+    if let Some(root) = file.root_without_mass() {
+        note!(
+            "note: `{root}`, the root of the robot, has no mass; a task gives it a base by `[task.base]`"
+        );
+        checked.remarks.extend(meshes_told);
+        return Ok(checked.with("root_without_mass", root).with("links_with_meshes_alone", meshes));
+    }
+    let robot = file.build(document)?;
+    warn_of(&robot);
+    let (source, counts) = shapes(&robot);
+    checked.remarks.push(words_for_shapes(source, &counts));
+    checked.remarks.extend(meshes_told);
+    let counts: Map<String, Value> =
+        counts.into_iter().map(|(name, count)| (name, count.into())).collect();
+    Ok(checked
+        .with("name", robot.name())
+        .with("joints", robot.joint_count())
+        .with("mass_kg", robot.total_mass())
+        .with("shapes", json!({ "source": source, "bodies": counts }))
+        .with("links_with_meshes_alone", meshes))
+}
+
+fn check_task(document: &Document) -> Result<Checked, CliError> {
+    let file = TaskFile::read(document)?.planned();
+    let problem = if file.task.is_mission() {
+        let mission = file.task.mission(document)?;
+        file.trajectory.build(Arc::new(mission.ends), document)?
+    } else {
+        file.problem(document)?
+    };
+    let robot = &problem.task().robot;
+    warn_of(robot);
+    let checked = Checked::new("task", &file.resolved(&problem))?;
+    Ok(checked.with("robot", robot.name()).with("joints", robot.joint_count()))
+}
+
 #[cfg(feature = "harness")]
-fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError> {
+fn check_experiment(document: &Document, estimate: bool) -> Result<Checked, CliError> {
     use super::run::default_jobs;
     use super::submit::WORKERS;
     use super::warnings::{warn_of_budgets, warn_of_subjects};
-    use crate::exhibit::words::plural;
     use crate::experiment::{self, Experiment};
     use crate::registry::registry;
     use indicatif::HumanDuration;
@@ -137,34 +154,48 @@ fn check_experiment(document: &Document, estimate: bool) -> Result<(), CliError>
         }
     }
     let own = plan.optimisers.iter().map(|entrant| entrant.seeds.unwrap_or(experiment.seeds()));
-    let seeds = match (own.clone().min(), own.max()) {
-        (Some(fewest), Some(most)) if fewest < most => format!("{fewest} to {most}"),
-        _ => experiment.seeds().to_string(),
-    };
-    say!("# experiment, with every default filled in");
-    say!("{}", plan.experiment.to_toml().map_err(CliError::Resolved)?.trim_end());
+    let fewest = own.clone().min().unwrap_or(experiment.seeds());
+    let most = own.max().unwrap_or(experiment.seeds());
+    let seeds = if fewest < most { format!("{fewest} to {most}") } else { most.to_string() };
     let (instances, optimisers) = (plan.instances.len(), plan.optimisers.len());
-    say!(
-        "\n# {}: {} × {} × {seeds} {}",
+    let mut remarks = vec![format!(
+        "{}: {} × {} × {seeds} {}",
         plural(plan.runs.len(), "run"),
         plural(instances, "instance"),
         plural(optimisers, "optimiser"),
         if seeds == "1" { "seed" } else { "seeds" }
-    );
+    )];
+    let resolved = plan.experiment.to_toml().map_err(CliError::Resolved)?;
+    let checked = Checked { kind: "experiment", resolved, remarks: Vec::new(), facts: Map::new() };
+    let mut checked = checked
+        .with("name", plan.name.as_str())
+        .with("runs", plan.runs.len())
+        .with("instances", instances)
+        .with("optimisers", optimisers)
+        .with("seeds", json!([fewest, most]));
     if estimate {
         let jobs = default_jobs();
         let estimate = experiment::estimate(&plan, jobs)?;
         let time = estimate.time(jobs).max(Duration::from_secs(1));
-        let threads = if jobs == 1 { "thread" } else { "threads" };
         let rest =
             if estimate.is_partial() { ", without the runs that start programs" } else { "" };
-        say!("# about {} on {jobs} {threads} (measured just now){rest}", HumanDuration(time));
+        remarks.push(format!(
+            "about {} on {} (measured just now){rest}",
+            HumanDuration(time),
+            plural(jobs, "thread")
+        ));
         let shards = estimate.shards(WORKERS, 1);
         if shards.most > 1 {
-            say!("# {}", words_for_shards(shards, WORKERS));
+            remarks.push(words_for_shards(shards, WORKERS));
         }
+        checked = checked
+            .with("jobs", jobs)
+            .with("time_s", estimate.time(jobs).as_secs_f64())
+            .with("is_partial", estimate.is_partial())
+            .with("shards", json!([shards.fewest, shards.most]));
     }
-    Ok(())
+    checked.remarks = remarks;
+    Ok(checked)
 }
 
 /// How many shards make sense.
@@ -174,44 +205,41 @@ fn words_for_shards(sensible: crate::experiment::Sensible, workers: usize) -> St
     let idle = (100.0 * idle_with_one_each).max(0.0);
     let range = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
     format!(
-        "{range} shards make sense for {workers} workers of a scheduler; with one each they would be idle for {idle:.0} % \
+        "{range} shards make sense for {workers} workers of a scheduler; with one shard each, the workers would be idle for {idle:.0} % \
          of the time"
     )
 }
 
 #[cfg(not(feature = "harness"))]
-fn check_experiment(_: &Document, _: bool) -> Result<(), CliError> {
+fn check_experiment(_: &Document, _: bool) -> Result<Checked, CliError> {
     let message = "this is an experiment; this build leaves experiments out".to_owned();
     Err(CliError::Usage { message, help: None })
 }
 
-/// Where a robot's shapes come from, and how many each body has.
-fn words_for_shapes(robot: &Robot) -> String {
+/// Where a robot's shapes come from, and how many each body that has some has.
+fn shapes(robot: &Robot) -> (ShapeSource, Vec<(String, usize)>) {
     let (shaped, source) = robot.with_shapes();
     let links = shaped.links().iter().map(|link| (link.name.as_str(), &link.body));
     let bodies = std::iter::once(("base", shaped.base())).chain(links);
-    let counts: Vec<String> = bodies
-        .filter(|(_, body)| !body.shapes.is_empty())
-        .map(|(name, body)| format!("{name} {}", body.shapes.len()))
-        .collect();
+    let counts = bodies.filter(|(_, body)| !body.shapes.is_empty());
+    (source, counts.map(|(name, body)| (name.to_owned(), body.shapes.len())).collect())
+}
+
+fn words_for_shapes(source: ShapeSource, counts: &[(String, usize)]) -> String {
+    let counts: Vec<String> =
+        counts.iter().map(|(name, count)| format!("{name} {count}")).collect();
     let source = match source {
         ShapeSource::Stated => "stated",
         ShapeSource::Derived => "derived, since none are stated",
     };
-    format!("# shapes ({source}): {}", counts.join(", "))
+    format!("shapes ({source}): {}", counts.join(", "))
 }
 
 /// How many links have no shape for having meshes instead, if any.
-fn words_for_meshes(file: &RobotFile) -> Option<String> {
-    let (meshes, links) = file.links_with_meshes_alone();
+fn words_for_meshes(meshes: usize, links: usize) -> Option<String> {
     let verb = if meshes == 1 { "has" } else { "have" };
     (meshes > 0).then(|| {
-        format!("# {meshes} of {links} links {verb} no shape: their collision geometry is a mesh")
+        let links = plural(links, "link");
+        format!("{meshes} of {links} {verb} no shape: their collision geometry is a mesh")
     })
-}
-
-fn print_resolved(kind: &str, file: &impl Serialize) -> Result<(), CliError> {
-    say!("# {kind}, with every default filled in");
-    say!("{}", toml::to_string(file)?.trim_end());
-    Ok(())
 }

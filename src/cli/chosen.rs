@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::kind::Kind;
 use super::trust::tell_programs;
 use super::{CliError, read_or};
 use crate::experiment::{Experiment, Plan};
@@ -19,16 +20,16 @@ pub(super) struct Chosen {
     /// Folder for the results [default: results/NAME]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of seeds, instead of the file's
+    /// Number of seeds, overriding the file's
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(super) seeds: Option<u64>,
-    /// Evaluations per run, instead of the file's
+    /// Evaluations per run, overriding the file's
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     pub(super) budget: Option<u64>,
-    /// Do again what is stored and has failed
+    /// Repeat stored runs that failed
     #[arg(long)]
     pub(super) retry: bool,
-    /// Start the programs that a file of results names, now and later
+    /// Allow starting the programs that a folder of results names, now and in future
     #[arg(long)]
     trust: bool,
 }
@@ -36,7 +37,7 @@ pub(super) struct Chosen {
 impl Chosen {
     /// The experiment.
     pub(super) fn read(&self) -> Result<Experiment, CliError> {
-        let document = read_or(self.file.as_deref(), Experiment::embedded)?;
+        let document = read_or(self.file.as_deref(), Kind::Experiment, Experiment::embedded)?;
         let mut experiment = Experiment::read(&document, &registry())?;
         if let Some(from) = experiment.imported() {
             let message = format!("these results were imported, from {from}, and cannot be run");

@@ -3,17 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
-use super::CliError;
 use super::results::{ResultsFolder, no_results};
 use super::sampling::SamplingOptions;
 use super::warnings::warn_of_damage;
+use super::{CliError, say_json};
 use crate::exhibit::words::plural;
 use crate::experiment::{Plan, Run, load, standing};
 use crate::export::{Suite, SuiteFormat, write_suite};
 use crate::reorientation::{MotionFormat, TaskSubject, write_motions};
 
-/// Write an experiment's runs as other benchmarking tools read them, or its best motions
+/// Export the runs of an experiment for other benchmarking tools, or its best motions
 #[derive(Debug, Args)]
 pub(super) struct Export {
     #[command(flatten)]
@@ -21,11 +22,14 @@ pub(super) struct Export {
     /// Format to write
     #[arg(long, value_enum)]
     format: Format,
-    /// Folder to write; it may exist, but only empty
+    /// Folder to write, new or empty
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     #[command(flatten)]
     sampling: SamplingOptions,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -34,19 +38,19 @@ enum Format {
     Ioh,
     /// The runs for COCO, read by cocopp
     Coco,
-    /// The best motion of every instance as comma-separated values, a row for each time and joint
+    /// The best motion of every instance as CSV with a row for each time and joint
     Csv,
-    /// The best motion of every instance as comma-separated values, a row for each time
+    /// The best motion of every instance as CSV with a row for each time
     WideCsv,
-    /// The best motion of every instance as Parquet, a row for each time and joint
+    /// The best motion of every instance as Parquet with a row for each time and joint
     Parquet,
     /// The best motion of every instance for MATLAB
     Mat,
-    /// The best motion of every instance as ROS JointTrajectory
+    /// The best motion of every instance as a ROS JointTrajectory message
     Yaml,
-    /// The best motion of every instance as the goal of ROS 2's FollowJointTrajectory
+    /// The best motion of every instance as a goal for ROS 2's FollowJointTrajectory action
     GoalYaml,
-    /// The best motion of every instance as a folder that plays it in MuJoCo
+    /// The best motion of every instance as a folder with a MuJoCo model that plays it
     Mujoco,
 }
 
@@ -87,7 +91,8 @@ impl Export {
             });
         }
         if runs.len() < plan.runs.len() {
-            note!("note: {} of {} runs are stored so far", runs.len(), plan.runs.len());
+            let planned = plural(plan.runs.len(), "run");
+            note!("note: {} of {planned} are stored so far", runs.len());
         }
         match self.format.kind() {
             Kind::Runs(format) => self.write_runs(format, plan, &runs),
@@ -107,17 +112,28 @@ impl Export {
         }
         if suite.renumbered > 0 {
             note!(
-                "note: {} functions or instances have the next free number, as another of this experiment has their own; \
-                 in other experiments these numbers may stand for something else",
-                suite.renumbered
+                "note: {} of functions and instances were replaced by the next free one, as another of this experiment has \
+                 the same; in other experiments they may stand for something else",
+                plural(suite.renumbered, "number")
             );
         }
+        if self.json {
+            return say_json(&json!({
+                "folder": self.out.display().to_string(),
+                "runs": suite.trials.len(),
+                "failed": failed,
+                "optimisers": suite.algorithms.len(),
+                "functions": suite.functions.len(),
+                "renumbered": suite.renumbered,
+                "read_by": reader(format, &self.out),
+            }));
+        }
         say!(
-            "{}: {} runs of {} optimisers on {} functions",
+            "{}: {} of {} on {}",
             self.out.display(),
-            suite.trials.len(),
-            suite.algorithms.len(),
-            suite.functions.len()
+            plural(suite.trials.len(), "run"),
+            plural(suite.algorithms.len(), "optimiser"),
+            plural(suite.functions.len(), "function")
         );
         say!("read it with\n  {}", reader(format, &self.out));
         Ok(())
@@ -134,8 +150,17 @@ impl Export {
             return Err(CliError::Usage { message, help: Some("expected ioh or coco".to_owned()) });
         }
         let written = write_motions(&self.out, format, self.sampling.choice(), plan, runs)?;
-        let instances = plural(written.motions, "instance");
-        say!("{}: the best motions of {instances}", self.out.display());
+        if self.json {
+            say_json(&json!({
+                "folder": self.out.display().to_string(),
+                "motions": written.motions,
+                "missed": written.missed,
+                "tolerance_deg": written.tolerance_deg,
+            }))?;
+        } else {
+            let instances = plural(written.motions, "instance");
+            say!("{}: the best motions of {instances}", self.out.display());
+        }
         if written.missed > 0 {
             let verb = if written.missed == 1 { "ends" } else { "end" };
             note!(

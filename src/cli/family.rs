@@ -8,14 +8,14 @@ use crate::reorientation::{FamilyChoice, FamilyName};
 /// Which motions are searched.
 #[derive(Debug, Args)]
 pub(super) struct FamilyOptions {
-    /// Family of motions, instead of the file's: splines are faster than sine polynomials and reach more goals, and are the
-    /// choice of `scp` where neither says
+    /// Family of motions, overriding the file's. Splines give faster motions than sine polynomials and reach more goals; `scp`
+    /// uses them unless told otherwise
     #[arg(long, value_name = "NAME")]
     family: Option<FamilyName>,
-    /// Pieces of a spline, instead of the file's; 80 unless the file names a family
+    /// Pieces of a spline, overriding the file's [default: 80 unless the file names a family]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(4..=1000))]
     pieces: Option<u16>,
-    /// Degree of a spline, instead of the file's or 4: 3 has a constant jerk on each piece, 4 a continuous one, 5 a smooth one
+    /// Degree of a spline, overriding the file's: 3 has constant jerk on each piece, 4 continuous jerk, 5 smooth jerk [default: 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(3..=5))]
     degree: Option<u8>,
 }

@@ -8,16 +8,20 @@ use crate::reorientation::{
     PlannedMission, Reach, Robustness, Spent,
 };
 use crate::task::Task;
+use crate::words::plural;
 
 /// For people.
 pub(super) fn told(found: &Planned) -> String {
     let task = found.problem.task();
     let mut text = match found.problem.spec() {
         FamilySpec::SinePolynomial { terms } => {
-            format!("  family         sine polynomials with {terms} terms\n")
+            format!("  family         sine polynomials with {}\n", plural(terms, "term"))
         }
         FamilySpec::Spline { pieces, degree } => {
-            format!("  family         splines of degree {degree} with {pieces} pieces\n")
+            format!(
+                "  family         splines of degree {degree} with {}\n",
+                plural(pieces, "piece")
+            )
         }
     };
     let excursions = found.excursions();
@@ -35,12 +39,11 @@ pub(super) fn told(found: &Planned) -> String {
         let _ = writeln!(text, "  in comparison  {}", other_told(other));
     }
     let Spent { evaluations, seconds, .. } = found.spent;
-    let s = if evaluations == 1 { "" } else { "s" };
-    let _ = write!(text, "  {evaluations} evaluation{s} in {seconds:.2} s");
+    let _ = write!(text, "  {} in {seconds:.2} s", plural(evaluations as usize, "evaluation"));
     text
 }
 
-/// Residuals of robots as they may be, and what they come from.
+/// Residuals of sampled robots, and what they come from.
 fn robustness_told(robustness: &Robustness, task: &Task) -> String {
     let [median, most, worst] =
         [0.5, 0.95, 1.0].map(|share| robustness.quantile(share).to_degrees());
@@ -49,9 +52,9 @@ fn robustness_told(robustness: &Robustness, task: &Task) -> String {
         format!("{} {:.4}°", unknown.name(&task.robot), angle.to_degrees())
     });
     format!(
-        "  uncertain      residual of {} robots: {median:.4}° in the median, {most:.4}° for 95 %, {worst:.4}° at worst\n\
+        "  uncertain      residual of {}: {median:.4}° in the median, {most:.4}° for 95 %, {worst:.4}° at worst\n\
          \x20                most of it by {}",
-        robustness.residuals.len(),
+        plural(robustness.residuals.len(), "sampled robot"),
         largest.collect::<Vec<_>>().join(", ")
     )
 }
@@ -90,5 +93,5 @@ fn other_told(other: &OtherFamily) -> String {
         Reach::Reached => format!("{t_f:.6} s"),
         _ => format!("none found that reaches the goal ({residual_deg:.3}° off)"),
     };
-    format!("sine polynomials with {terms} terms: {found}")
+    format!("sine polynomials with {}: {found}", plural(*terms, "term"))
 }

@@ -3,17 +3,19 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
-use super::CliError;
+use super::kind::{self, Kind};
 use super::results::start_all_threads;
+use super::{CliError, say_json};
 use crate::exhibit::words::plural;
 use crate::experiment::{DataFormat, Folder};
 use crate::import::read;
 
-/// Make a folder of results of other programs' runs, to be reported beside others
+/// Import runs of other programs as a folder of results, to be reported beside others
 #[derive(Debug, Args)]
 pub(super) struct Import {
-    /// Folder of data, or one of its indexes; of CSV one table, or a folder of them
+    /// Folder of data or one of its index files; for CSV, a table or a folder of tables
     #[arg(value_name = "DATA")]
     data: PathBuf,
     /// Format to read
@@ -22,20 +24,26 @@ pub(super) struct Import {
     /// Folder for the results, new or empty; the experiment is named after it
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Format {
-    /// IOHprofiler's: an index in JSON per function, and the tables beside
+    /// IOHprofiler: a JSON index for each function, with its tables beside it
     Ioh,
-    /// COCO's: an index .info per function, and the tables beside
+    /// COCO: an .info index for each function, with its tables beside it
     Coco,
-    /// A long table: problem, optimiser, seed, evaluation, cost
+    /// A long table with the columns problem, optimiser, seed, evaluation and cost
     Csv,
 }
 
 impl Import {
     pub(super) fn execute(self) -> Result<(), CliError> {
+        if self.data.join("experiment.toml").is_file() {
+            kind::refuse_others(&self.data, Kind::Folder)?;
+        }
         start_all_threads()?;
         let format = match self.format {
             Format::Ioh => DataFormat::Ioh,
@@ -46,6 +54,15 @@ impl Import {
         let plan = Folder::import(&self.out, &import.foreign)?;
         for note in &import.notes {
             note!("note: {note}");
+        }
+        if self.json {
+            return say_json(&json!({
+                "folder": self.out.display().to_string(),
+                "runs": plan.runs.len(),
+                "optimisers": plan.optimisers.len(),
+                "instances": plan.instances.len(),
+                "notes": import.notes,
+            }));
         }
         say!(
             "{}: {} of {} on {}",

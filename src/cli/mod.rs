@@ -22,16 +22,21 @@ mod check;
 mod chosen;
 #[cfg(feature = "harness")]
 mod compact;
+mod completions;
 #[cfg(feature = "harness")]
 mod export;
 mod family;
 mod found;
 #[cfg(feature = "harness")]
 mod import;
+mod kind;
 mod list;
+mod man;
 mod motion;
 mod plan;
 mod progress;
+#[cfg(all(test, feature = "harness"))]
+mod reference;
 mod replay;
 mod replayed;
 #[cfg(feature = "harness")]
@@ -54,16 +59,19 @@ mod trust;
 #[cfg(feature = "harness")]
 mod warnings;
 
+use std::collections::BTreeSet;
 use std::error::Error as _;
 use std::ffi::OsString;
 use std::fmt::{self, Write as _};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, Mutex};
 
 use clap::{Parser, Subcommand};
+use kind::Kind;
 use miette::{Diagnostic, MietteHandlerOpts, NamedSource, Report, SourceSpan};
+use serde::Serialize;
 use thiserror::Error;
 
 use crate::input::{Document, InputError};
@@ -89,34 +97,34 @@ enum Verb {
     /// Run an experiment: every optimiser on every instance for every seed
     #[cfg(feature = "harness")]
     Run(run::Run),
-    /// Write the job that runs an experiment on a scheduler; with --go, start it
+    /// Print the job script that runs an experiment on a scheduler; with --go, submit it
     #[cfg(feature = "harness")]
     Submit(submit::Submit),
-    /// Say which runs of an experiment are done, failed or missing
+    /// Show which runs of an experiment are done, failed or missing
     #[cfg(feature = "harness")]
     Status(status::Status),
-    /// Make tables, figures and a page from what is stored
+    /// Write tables, figures and an HTML page from stored results
     #[cfg(feature = "harness")]
     Report(report::Report),
-    /// Merge many small files of results into few, while others run or read
+    /// Merge many small result files into a few; other processes may run and read meanwhile
     #[cfg(feature = "harness")]
     Compact(compact::Compact),
-    /// Write an experiment's runs as other benchmarking tools read them, or its best motions
+    /// Export the runs of an experiment for other benchmarking tools, or its best motions
     #[cfg(feature = "harness")]
     Export(export::Export),
-    /// Make a folder of results of other programs' runs, to be reported beside others
+    /// Import runs of other programs as a folder of results, to be reported beside others
     #[cfg(feature = "harness")]
     Import(import::Import),
     /// Find the best motion for one task
     Plan(plan::Plan),
-    /// Offer a task to an optimiser of yours, which asks for costs
+    /// Serve a task to an external optimiser, which asks for costs
     #[cfg(feature = "harness")]
     Serve(serve::Serve),
     /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
     ///
-    /// A trajectory of another program is checked against a task: where the base ends, peaks, limits, ranges, and what is not at
-    /// rest or jumps. It is read as ROS 2's joint trajectory controller plays it, with straight lines, cubics or quintics between
-    /// points, as these have positions alone, rates too, or accelerations too.
+    /// A trajectory of another program is checked against a task: the final attitude of the base, peaks, limits and joint ranges,
+    /// whether it starts and ends at rest, and whether it jumps. It is interpolated as ROS 2's joint trajectory controller does it:
+    /// linearly between points with positions only, by cubics with velocities, by quintics with accelerations.
     Replay(replay::Replay),
     /// Draw a motion as a film
     ///
@@ -124,12 +132,16 @@ enum Verb {
     /// the base's axes, the base at its goal, dashed, the way of the tool, and what the robot has to keep out of.
     #[cfg(feature = "film")]
     Animate(animate::Animate),
-    /// Show optimisers, problems and robots with their settings
+    /// List optimisers with their settings, problems and robots
     List(list::List),
-    /// Convert robot files from and to URDF
+    /// Convert robot files to and from URDF
     Robot(robot::RobotVerb),
-    /// Say what is wrong with an input file, or print it resolved
+    /// Validate an input file and print it with every default filled in
     Check(check::Check),
+    /// Print a completion script for a shell
+    Completions(completions::Completions),
+    /// Write man pages
+    Man(man::Man),
 }
 
 /// Why a command did not do what it was asked to.
@@ -337,7 +349,9 @@ impl CliError {
         match self {
             Self::Unreadable { .. } | Self::Input { .. } | Self::Usage { .. } => 2,
             #[cfg(feature = "harness")]
-            Self::Shard { .. } | Self::Import(crate::import::ImportError::Content { .. }) => 2,
+            Self::Shard { .. }
+            | Self::Import(crate::import::ImportError::Content { .. })
+            | Self::Report(crate::report::ReportError::NoChart { .. }) => 2,
             Self::Required(_) => 3,
             _ => 1,
         }
@@ -382,6 +396,8 @@ pub fn main_with(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::List(list) => list.execute(),
         Verb::Robot(robot) => robot.execute(),
         Verb::Check(check) => check.execute(),
+        Verb::Completions(completions) => completions.execute(),
+        Verb::Man(man) => man.execute(),
     };
     match outcome {
         Ok(()) => 0,
@@ -439,26 +455,22 @@ fn shown_error(error: CliError) -> String {
     text
 }
 
-/// The file named, or a text that comes with the program.
+/// The file named, of a kind, or a text that comes with the program.
 fn read_or(
     file: Option<&Path>,
+    kind: Kind,
     embedded: impl FnOnce() -> Document,
-) -> Result<Document, InputError> {
-    file.map_or_else(|| Ok(embedded()), Document::read)
+) -> Result<Document, CliError> {
+    file.map_or_else(|| Ok(embedded()), |file| kind::read(file, kind))
 }
 
 /// A task: its file, the name of a robot that comes with one, or the paper's.
-fn read_task(file: Option<&Path>) -> Result<Document, InputError> {
+fn read_task(file: Option<&Path>) -> Result<Document, CliError> {
     let Some(file) = file else { return Ok(TaskFile::paper()) };
     match shipped(file) {
         Some((robot, _)) => Ok(Document::embedded(robot, &format!("[task]\nrobot = {robot:?}\n"))),
-        None => Document::read(file),
+        None => kind::read(file, Kind::Task),
     }
-}
-
-/// A file, or that of a robot that comes with the program, by its name.
-fn read_robot_or(file: &Path) -> Result<Document, InputError> {
-    shipped(file).map_or_else(|| Document::read(file), |(_, document)| Ok(document))
 }
 
 /// A robot that comes with the program and its file, where a path is its name and no file's.
@@ -467,11 +479,26 @@ fn shipped(path: &Path) -> Option<(&str, Document)> {
     Robot::embedded(name).map(|document| (name, document))
 }
 
-/// Says what is unphysical about a robot.
+/// Says once what is unphysical about a robot, unless the robot comes with the program.
 fn warn_of(robot: &Robot) {
-    if let Some(warning) = robot.warning() {
+    warn_once(robot.unexpected_warning());
+}
+
+/// Prints a warning that was not printed before.
+fn warn_once(warning: Option<String>) {
+    static PRINTED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    if let (Some(warning), Ok(mut printed)) = (warning, PRINTED.lock())
+        && printed.insert(warning.clone())
+    {
         note!("warning: {warning}");
     }
+}
+
+/// Prints one JSON object.
+fn say_json(value: &impl Serialize) -> Result<(), CliError> {
+    let text = serde_json::to_string_pretty(value);
+    say!("{}", text.map_err(|error| CliError::Resolved(error.to_string()))?);
+    Ok(())
 }
 
 /// Set by Ctrl-C and other signals that ask the program to end.

@@ -21,17 +21,17 @@ use crate::task::{Task, ToolGoal};
 /// Where to write a motion.
 #[derive(Debug, Args)]
 pub(super) struct MotionFiles {
-    /// Write the motion; the name's end is the format: .csv or .parquet (a row for each time and joint), .wide.csv (a row for each
-    /// time), .mat (MATLAB), .yaml (ROS JointTrajectory), .goal.yaml (goal of ROS 2's FollowJointTrajectory), .mujoco (a folder that
-    /// plays it in MuJoCo); docs/motions.md has all columns
+    /// Write the motion in the format of the extension: .csv or .parquet (a row for each time and joint), .wide.csv (a row for
+    /// each time), .mat (MATLAB), .yaml (ROS JointTrajectory), .goal.yaml (goal of ROS 2's FollowJointTrajectory), .mujoco (a folder
+    /// with a MuJoCo model that plays it)
     #[arg(long, value_name = "FILE")]
     motion: Option<PathBuf>,
     #[command(flatten)]
     sampling: SamplingOptions,
-    /// Joints that --motion has, by name or by the beginning of their names: left_* [default: all]
+    /// Joints to write with --motion: names, or prefixes such as left_* [default: all]
     #[arg(long, value_name = "JOINTS", value_delimiter = ',', requires = "motion")]
     joints: Vec<String>,
-    /// Draw joint angles, their derivatives and the base's attitude into a folder
+    /// Draw joint angles, their derivatives, the base's attitude and snapshots into a folder
     #[cfg(feature = "harness")]
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -43,7 +43,7 @@ impl MotionFiles {
         match self.format()? {
             Some((path, MotionFormat::Mujoco)) => {
                 if !self.joints.is_empty() {
-                    let message = "--joints: a motion for MuJoCo has all joints".to_owned();
+                    let message = "--joints: a motion for MuJoCo always has all joints".to_owned();
                     return Err(CliError::Usage { message, help: None });
                 }
                 check_folder_writable(path)?;

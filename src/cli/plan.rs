@@ -4,12 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::check::expect_task;
 use super::family::FamilyOptions;
 use super::found::{mission_told, told};
 use super::motion::MotionFiles;
 use super::progress::Bar;
-use super::{CliError, read_task, shown, start_worker_threads, warn_of, watch};
+use super::{CliError, read_task, say_json, shown, start_worker_threads, warn_of, watch};
 use crate::input::nearest;
 use crate::optimiser::Settings;
 use crate::reorientation::{
@@ -20,11 +19,11 @@ use crate::task::{Task, TaskTable};
 /// Find the best motion for one task
 #[derive(Debug, Args)]
 pub(super) struct Plan {
-    /// Task file, or a robot that comes with a task; without one, the paper's task
+    /// Task file, or the name of a shipped robot, which has its own task [default: the paper's task]
     #[arg(value_name = "TASK")]
     file: Option<PathBuf>,
-    /// Optimiser, with its default settings; `driftless list` shows them. Others than `scp` search sine polynomials, of few
-    /// variables, unless told otherwise
+    /// Optimiser, with its default settings; see `driftless list`. Optimisers other than `scp` search sine polynomials, which
+    /// have few variables, unless --family or the file says otherwise
     #[arg(long, value_name = "NAME", default_value = "scp")]
     optimiser: String,
     #[command(flatten)]
@@ -32,29 +31,26 @@ pub(super) struct Plan {
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Evaluations to spend
+    /// Maximum number of evaluations
     #[arg(long, value_name = "N", default_value_t = 150_000, value_parser = clap::value_parser!(u64).range(1..))]
     budget: u64,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// End with exit status 3 unless the motion reaches its goal and keeps all limits and ranges
+    /// Exit with status 3 unless the motion reaches its goal within all limits and joint ranges
     #[arg(long)]
     require: bool,
-    /// Say the motion as an entry for results/best-known.toml, too
+    /// Also print the motion as an entry for results/best-known.toml
     #[arg(long)]
     entry: bool,
     #[command(flatten)]
     files: MotionFiles,
 }
 
-/// Says what is doubtful about a task.
-pub(super) fn warn_of_task(task: &Task) {
-    warn_of(&task.robot);
+/// Says what is doubtful about a task's weights.
+pub(super) fn warn_of_weights(task: &Task) {
     if task.base_weight >= 1.0 {
-        note!(
-            "warning: `weights.base` is 1, so time weighs nothing and the motion is as slow as it happens to be"
-        );
+        note!("warning: `weights.base` is 1, so time weighs nothing and the duration is arbitrary");
     }
 }
 
@@ -64,8 +60,8 @@ impl Plan {
         self.files.check()?;
         let optimiser = find_optimiser(&self.optimiser)?;
         let document = read_task(self.file.as_deref())?;
-        expect_task(&document, "plan")?;
         let planner = Planner::read(&document, self.family.choice(), optimiser)?;
+        warn_of(&planner.task().robot);
         self.files.check_joints(&planner.task().robot)?;
         if planner.is_mission() {
             return self.plan_mission(&planner);
@@ -73,7 +69,7 @@ impl Plan {
         if let Some(residual) = planner.task().already_there() {
             return self.tell_already_there(planner.task(), residual);
         }
-        warn_of_task(planner.task());
+        warn_of_weights(planner.task());
         let found = {
             let watch = watch();
             let _bar = Bar::new(self.budget, watch.clone());
@@ -84,7 +80,7 @@ impl Plan {
 
     /// Plans a task of several motions.
     fn plan_mission(&self, planner: &Planner) -> Result<(), CliError> {
-        warn_of_task(planner.task());
+        warn_of_weights(planner.task());
         let found = {
             let watch = watch();
             let _bar = Bar::new(self.budget, watch.clone());
@@ -100,7 +96,7 @@ impl Plan {
         let task = &planner.file().task;
         if self.json {
             let json = found.json(&self.asked(task));
-            say!("{}", serde_json::to_string_pretty(&json).unwrap_or_default());
+            say_json(&json)?;
         } else {
             say!("{} by {}, seed {}", shown(self.file.as_ref(), ""), self.optimiser, self.seed);
             if let Some(inheritance) = task.inheritance() {
@@ -155,7 +151,7 @@ impl Plan {
                 "t_f": 0.0,
                 "residual_deg": residual_deg,
             });
-            say!("{json:#}");
+            say_json(&json)?;
         } else {
             say!(
                 "{}: already there: all joints stand at their goals, and the base is {residual_deg:.6}° from its goal (within \
@@ -170,7 +166,7 @@ impl Plan {
     fn finish(&self, found: &Planned, task: &TaskTable) -> Result<(), CliError> {
         if self.json {
             let json = found.json(self.asked(task));
-            say!("{}", serde_json::to_string_pretty(&json).unwrap_or_default());
+            say_json(&json)?;
         } else {
             let file = shown(self.file.as_ref(), "the paper's task");
             say!("{file} by {}, seed {}", self.optimiser, self.seed);

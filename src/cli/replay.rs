@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use super::check::expect_task;
+use super::kind::Kind;
 use super::motion::{MotionFiles, Told};
 use super::replayed::Trajectory;
-use super::{CliError, read_or, read_task, shown, start_worker_threads, warn_of};
+use super::{CliError, read_or, read_task, shown, start_worker_threads};
 use crate::reorientation::{
     AngleUnit, AssessmentJson, Excursions, ExcursionsJson, GivenTrajectory, Published, Reading,
     Record, ReplayFile, Replayed, Sampling, ShapeJson, TaskFile,
@@ -18,8 +18,8 @@ use crate::task::Task;
 /// Evaluate a given motion; without a file, the one published by Xiao et al. (2023)
 #[derive(Debug, Args)]
 pub(super) struct Replay {
-    /// File with a [motion] table, or a trajectory: a ROS JointTrajectory in .yaml or .json, or a table in .csv or .parquet, with
-    /// a row for each time and a column for each joint, or a row for each time and joint; without one, the published motion
+    /// Motion file, or a trajectory: a ROS JointTrajectory in .yaml or .json, or a table in .csv or .parquet with either a row
+    /// for each time and a column for each joint, or a row for each time and joint [default: the published motion]
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     #[command(flatten)]
@@ -34,10 +34,10 @@ pub(super) struct Replay {
 /// How a trajectory is read.
 #[derive(Debug, Args)]
 pub(super) struct TrajectoryOptions {
-    /// Task that a trajectory is for; without one, the paper's
+    /// Task of a trajectory [default: the paper's]
     #[arg(long, value_name = "TASK")]
     pub(super) task: Option<PathBuf>,
-    /// Unit of angles in a table whose columns' names state none
+    /// Unit of angles in a table whose column names do not state one
     #[arg(long)]
     unit: Option<Unit>,
 }
@@ -56,14 +56,9 @@ impl TrajectoryOptions {
         Ok(())
     }
 
-    /// A trajectory and its task, for a verb.
-    pub(super) fn read(
-        &self,
-        file: &Path,
-        verb: &str,
-    ) -> Result<(Task, GivenTrajectory), CliError> {
+    /// A trajectory and its task.
+    pub(super) fn read(&self, file: &Path) -> Result<(Task, GivenTrajectory), CliError> {
         let document = read_task(self.task.as_deref())?;
-        expect_task(&document, verb)?;
         let table = TaskFile::read(&document)?.task;
         if table.is_mission() && table.mission(&document)?.changes_load() {
             let message = "the robot's load changes on the way, expected one that stays the same";
@@ -119,10 +114,9 @@ impl Replay {
             return self.replay_trajectory(file);
         }
         self.reading.check_unused()?;
-        let document = read_or(self.file.as_deref(), ReplayFile::paper)?;
+        let document = read_or(self.file.as_deref(), Kind::Motion, ReplayFile::paper)?;
         let published = ReplayFile::read(&document)?.build(&document)?;
         self.files.check_joints(&published.problem.task().robot)?;
-        warn_of(&published.problem.task().robot);
         let Published { problem, coefficients, duration, .. } = &published;
         let excursions = Excursions::on_the_way(&**problem, coefficients, *duration);
         let task = problem.task();
@@ -143,9 +137,8 @@ impl Replay {
 
     fn replay_trajectory(&self, file: &Path) -> Result<(), CliError> {
         start_worker_threads()?;
-        let (task, trajectory) = self.reading.read(file, "replay")?;
+        let (task, trajectory) = self.reading.read(file)?;
         self.files.check_joints(&task.robot)?;
-        warn_of(&task.robot);
         let replayed = Replayed::new(&task, &trajectory.points);
         let task_name = shown(self.reading.task.as_ref(), "the paper's task");
         let told = Trajectory { file, task: &task_name, replayed: &replayed };

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::motion::residual;
 use crate::reorientation::{PointReading, ReadPath, Replayed, ReplayedJson};
+use crate::words::plural;
 
 /// A trajectory, and the names of its file and its task.
 pub(super) struct Trajectory<'a> {
@@ -61,7 +62,7 @@ impl fmt::Display for Trajectory<'_> {
         let (points, played) = (replayed.points(), &replayed.played);
         let duration = points.duration();
         writeln!(f, "{} for {task}", file.display())?;
-        writeln!(f, "  points         {} of {} joints", points.count(), points.joints())?;
+        writeln!(f, "  points         {} of {}", points.count(), plural(points.joints(), "joint"))?;
         write!(f, "  duration       {duration:.6} s")?;
         if points.start() != 0.0 {
             write!(f, " from {} s on", points.start())?;

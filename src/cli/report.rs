@@ -3,28 +3,104 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
 use textwrap::{WordSeparator, WordSplitter};
 
-use super::CliError;
 use super::results::ResultsFolders;
 use super::warnings::{warn_of_budgets, warn_of_damage};
+use super::{CliError, say_json};
 use crate::exhibit::Finding;
 use crate::exhibit::words::plural;
 use crate::experiment::{Folder, Plan, Store, standing};
-use crate::report::{Target, write_all};
+use crate::report::{ChartOptions, PALETTES, Target, palette, write_all};
 
-/// Make tables, figures and a page from what is stored
+/// Write tables, figures and an HTML page from stored results
 #[derive(Debug, Args)]
 pub(super) struct Report {
     #[command(flatten)]
     results: ResultsFolders,
-    /// Folder for page, tables and figures, instead of that of the results; several folders need one
+    /// Folder for the page, tables and figures, instead of the results' own; required with several folders of results
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace a report of more runs than are stored now
+    /// Replace a report even if it shows more runs than are stored now
     #[arg(long)]
     replace: bool,
+    #[command(flatten)]
+    charts: ChartArguments,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Which charts are drawn, and how.
+#[derive(Debug, Args)]
+struct ChartArguments {
+    /// Charts to draw, by the names of their files, instead of all; other charts of an earlier report there are removed
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    charts: Vec<String>,
+    /// Draw linear axes instead of logarithmic ones; `--linear=x` or `--linear=y` only horizontal or vertical ones
+    #[arg(long, value_name = "AXES", num_args = 0..=1, require_equals = true, default_missing_value = "both")]
+    linear: Option<LinearAxes>,
+    /// Colours of lines and markers: the name of a palette (okabe-ito, tol-bright, grey), a list such as `#0072B2,#D55E00`,
+    /// or a file with one such colour on each line
+    #[arg(long, value_name = "COLOURS", value_parser = colours)]
+    colours: Option<Colours>,
+}
+
+/// Axes drawn linear.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum LinearAxes {
+    /// Horizontal axes
+    X,
+    /// Vertical axes
+    Y,
+    /// All axes
+    Both,
+}
+
+/// Colours in the order in which lines take them.
+#[derive(Debug, Clone)]
+struct Colours(Vec<[u8; 3]>);
+
+/// Reads the value of `--colours`.
+fn colours(text: &str) -> Result<Colours, String> {
+    if let Some(palette) = palette(text) {
+        return Ok(Colours(palette));
+    }
+    let from_file;
+    let list: Vec<&str> = if text.contains('#') {
+        text.split(',').map(str::trim).collect()
+    } else {
+        from_file = std::fs::read_to_string(text).map_err(|error| {
+            let palettes = PALETTES.map(|(name, _)| name).join(", ");
+            format!("expected {palettes}, colours such as #0072B2, or a file with these: {error}")
+        })?;
+        from_file.lines().map(str::trim).filter(|line| !line.is_empty()).collect()
+    };
+    let colour = |text: &&str| {
+        let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
+        let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+        let [_, red, green, blue] = number
+            .ok_or_else(|| format!("found `{text}`, expected a colour such as #0072B2"))?
+            .to_be_bytes();
+        Ok([red, green, blue])
+    };
+    let colours = list.iter().map(colour).collect::<Result<Vec<_>, String>>()?;
+    if colours.is_empty() { Err("found no colour".to_owned()) } else { Ok(Colours(colours)) }
+}
+
+impl ChartArguments {
+    fn options(&self) -> ChartOptions {
+        let linear = match self.linear {
+            None => [false, false],
+            Some(LinearAxes::X) => [true, false],
+            Some(LinearAxes::Y) => [false, true],
+            Some(LinearAxes::Both) => [true, true],
+        };
+        let colours = self.colours.as_ref().map_or_else(Vec::new, |Colours(own)| own.clone());
+        ChartOptions { only: self.charts.clone(), linear, colours }
+    }
 }
 
 impl Report {
@@ -42,9 +118,10 @@ impl Report {
         if self.replace {
             target = target.replacing();
         }
+        target.charts = self.charts.options();
         let plan = beside(&folders)?;
         let stores: Vec<&Store> = folders.iter().map(|folder| &folder.store).collect();
-        match report(&plan, &stores, &target)? {
+        match report(&plan, &stores, &target, self.json)? {
             // The damage has been reported already; the existing report still has those runs.
             Some(kept) if stores.iter().any(|store| !store.damaged().is_empty()) => {
                 note!("note: {kept}");
@@ -92,31 +169,20 @@ pub(super) fn report(
     plan: &Plan,
     stores: &[&Store],
     target: &Target<'_>,
+    json: bool,
 ) -> Result<Option<String>, CliError> {
     let report = write_all(plan, stores, target)?;
     for store in stores {
         warn_of_damage(store);
     }
-    if report.stored < plan.runs.len() {
-        say!("{} of {} runs are stored so far", report.stored, plan.runs.len());
-    }
-    say!("{}", report.summary);
-    warn_of_budgets(plan);
-    for line in &report.lines {
-        say!("{line}");
-    }
-    for Finding { question, answer } in &report.findings {
-        // Labels are not broken at their hyphens.
-        let line = textwrap::Options::new(LINE)
-            .word_separator(WordSeparator::AsciiSpace)
-            .word_splitter(WordSplitter::NoHyphenation);
-        say!("\n{question}\n{}", textwrap::fill(answer, line));
-    }
-    if report.kept.is_none() {
-        say!("\n{}; beside it tables/ and figures/", report.page.display());
+    if json {
+        say_json(&report_json(plan, &report))?;
+    } else {
+        tell(plan, &report)?;
     }
     if report.failed > 0 {
-        note!("warning: {} of {} runs failed or found nothing", report.failed, report.stored);
+        let stored = plural(report.stored, "run");
+        note!("warning: {} of {stored} failed or found nothing", report.failed);
     }
     for store in stores {
         let standing = standing(plan, store)?;
@@ -136,4 +202,48 @@ pub(super) fn report(
             report.stored
         )
     }))
+}
+
+fn report_json(plan: &Plan, report: &crate::report::Report) -> Value {
+    let finding =
+        |Finding { question, answer }: &Finding| json!({ "question": question, "answer": answer });
+    let shown = |paths: &[PathBuf]| -> Vec<String> {
+        paths.iter().map(|path| path.display().to_string()).collect()
+    };
+    json!({
+        "experiment": plan.name,
+        "runs": plan.runs.len(),
+        "stored": report.stored,
+        "failed": report.failed,
+        "page": report.page.display().to_string(),
+        "is_replaced": report.kept.is_none(),
+        "tables": shown(&report.tables),
+        "figures": shown(&report.figures),
+        "lines": report.lines,
+        "findings": report.findings.iter().map(finding).collect::<Vec<_>>(),
+    })
+}
+
+/// Prints what the runs say.
+fn tell(plan: &Plan, report: &crate::report::Report) -> Result<(), CliError> {
+    if report.stored < plan.runs.len() {
+        let planned = plural(plan.runs.len(), "run");
+        say!("{} of {planned} are stored so far", report.stored);
+    }
+    say!("{}", report.summary);
+    warn_of_budgets(plan);
+    for line in &report.lines {
+        say!("{line}");
+    }
+    for Finding { question, answer } in &report.findings {
+        // Labels are not broken at their hyphens.
+        let line = textwrap::Options::new(LINE)
+            .word_separator(WordSeparator::AsciiSpace)
+            .word_splitter(WordSplitter::NoHyphenation);
+        say!("\n{question}\n{}", textwrap::fill(answer, line));
+    }
+    if report.kept.is_none() {
+        say!("\n{}; beside it tables/ and figures/", report.page.display());
+    }
+    Ok(())
 }

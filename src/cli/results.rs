@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::CliError;
+use super::kind::{Kind, refuse_file};
 use crate::experiment::Folder;
 use crate::registry::registry;
 
@@ -19,6 +20,7 @@ pub(super) struct ResultsFolder {
 impl ResultsFolder {
     /// Reads the experiment that the folder keeps. Nothing is written.
     pub(super) fn open(&self) -> Result<Folder, CliError> {
+        expect_results(&self.folder)?;
         start_all_threads()?;
         Ok(Folder::open(&self.folder, &registry())?)
     }
@@ -35,10 +37,20 @@ pub(super) struct ResultsFolders {
 impl ResultsFolders {
     /// Reads the experiments that the folders keep. Nothing is written.
     pub(super) fn open(&self) -> Result<Vec<Folder>, CliError> {
+        self.folders.iter().try_for_each(|folder| expect_results(folder))?;
         start_all_threads()?;
         let registry = registry();
         self.folders.iter().map(|folder| Ok(Folder::open(folder, &registry)?)).collect()
     }
+}
+
+/// Whether a path may be a folder of results.
+fn expect_results(path: &Path) -> Result<(), CliError> {
+    if !path.is_file() {
+        return Ok(());
+    }
+    refuse_file(path, Kind::Results)?;
+    Err(no_results(path, "a file"))
 }
 
 /// Starts the threads that work on results is shared out to, those of polars among them.

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
+use serde_json::json;
 
-use super::{CliError, read_robot_or, warn_of};
+use super::kind::{self, Kind};
+use super::{CliError, say_json, shipped, warn_of};
 use crate::input::Document;
 use crate::output::write_file;
 use crate::robot::RobotFile;
@@ -18,21 +20,24 @@ pub(super) struct RobotVerb {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Turn URDF into a robot file, or a robot file into URDF for simulators and other planners
+    /// Convert a URDF to a robot file, or a robot file to URDF for simulators and other planners
     Convert(Convert),
 }
 
 #[derive(Debug, Args)]
 struct Convert {
-    /// A robot file, a URDF or the name of a robot that comes with the program
+    /// Robot file, URDF or name of a shipped robot
     #[arg(value_name = "ROBOT")]
     robot: PathBuf,
-    /// Format to write [default: that of --out, or else the other one]
+    /// Format to write [default: by the extension of --out, otherwise the one that the input is not in]
     #[arg(long, value_enum)]
     to: Option<Format>,
-    /// File to write instead of standard output
+    /// File to write [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -62,7 +67,10 @@ impl RobotVerb {
 
 impl Convert {
     fn execute(self) -> Result<(), CliError> {
-        let document = read_robot_or(&self.robot)?;
+        let document = match shipped(&self.robot) {
+            Some((_, document)) => document,
+            None => kind::read(&self.robot, Kind::Robot)?,
+        };
         let format = self.format(&document)?;
         let file = RobotFile::read(&document)?;
         let text = match format {
@@ -73,9 +81,19 @@ impl Convert {
                 robot.to_urdf()
             }
         };
-        match &self.out {
-            None => say!("{}", text.trim_end()),
-            Some(path) => write_file(path, text.as_bytes())?,
+        if let Some(path) = &self.out {
+            write_file(path, text.as_bytes())?;
+        }
+        if self.json {
+            return say_json(&json!({
+                "robot": self.robot.display().to_string(),
+                "format": if format == Format::Toml { "toml" } else { "urdf" },
+                "file": self.out.as_ref().map(|path| path.display().to_string()),
+                "text": self.out.is_none().then_some(text),
+            }));
+        }
+        if self.out.is_none() {
+            say!("{}", text.trim_end());
         }
         Ok(())
     }

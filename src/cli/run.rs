@@ -4,36 +4,40 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::json;
 
 use super::chosen::Chosen;
 use super::progress::Bar;
 use super::report::report;
 use super::results::start_all_threads;
-use super::warnings::warn_of_subjects;
-use super::{CliError, watch};
+use super::{CliError, say_json, watch};
 use crate::experiment::{
     Again, Damage, Folder, Options, Plan, Progress, Record, RunSpec, Shard, ShardChoice,
 };
 use crate::report::Target;
+use crate::words::plural;
 
 /// Run an experiment: every optimiser on every instance for every seed
 #[derive(Debug, Args)]
 pub(super) struct Run {
     #[command(flatten)]
     chosen: Chosen,
-    /// Runs at a time [default: one per processor]
+    /// Number of runs at a time [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Only a disjoint part of the runs, such as 0/4; /4 takes the index from the scheduler that runs
-    /// this, and --shard alone the count too
+    /// Do only one of N disjoint parts of the runs, such as 0/4. With /4 the index comes from the scheduler's environment
+    /// variables, with --shard alone the number of parts as well
     #[arg(long, value_name = "I/N", num_args = 0..=1, default_missing_value = "")]
     shard: Option<ShardChoice>,
-    /// Do again what is already stored
+    /// Repeat all stored runs
     #[arg(long)]
     fresh: bool,
-    /// Say nothing of runs that end as they should
+    /// Print only runs with warnings, not every run that ends
     #[arg(long)]
     quiet: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
 }
 
 const WAITING: &str = "note: another process is merging files; waiting until it is done";
@@ -88,7 +92,6 @@ impl Run {
         self.chosen.tell_programs(&experiment)?;
         experiment.ask_programs()?;
         let plan = experiment.plan()?;
-        warn_of_subjects(&plan);
         let path = self.chosen.folder(&plan);
         plan.check_possible(&path)?;
         let folder = Folder::create(&path, plan)?;
@@ -103,12 +106,23 @@ impl Run {
         let is_idle = self.run_missing(&folder, shard)? == 0;
         let (plan, stored) = (&folder.plan, folder.store.keys()?);
         let stored = plan.runs.iter().filter(|run| stored.contains(&run.key)).count();
+        let is_shard = shard.is_some_and(|_| stored < plan.runs.len() || is_idle);
+        if self.json && is_shard {
+            return say_json(&json!({
+                "experiment": plan.name,
+                "folder": path.display().to_string(),
+                "runs": plan.runs.len(),
+                "stored": stored,
+                "shard": shard.map(|shard| shard.to_string()),
+                "shard_runs": folder.runs(shard).len(),
+            }));
+        }
         match shard {
             Some(shard) if stored < plan.runs.len() => {
                 say!(
-                    "shard {shard}: its {} runs are stored in {}, {stored} of the experiment's {}; \
+                    "shard {shard}: {}, all stored in {}, which has {stored} of the experiment's {}; \
                      summary and figures come with the last",
-                    folder.runs(Some(shard)).len(),
+                    plural(folder.runs(Some(shard)).len(), "run"),
                     path.display(),
                     plan.runs.len()
                 );
@@ -120,7 +134,9 @@ impl Run {
                 Ok(())
             }
             _ => {
-                if let Some(kept) = report(&folder.plan, &[&folder.store], &Target::of(&path))? {
+                if let Some(kept) =
+                    report(&folder.plan, &[&folder.store], &Target::of(&path), self.json)?
+                {
                     note!("note: {kept}; `driftless report --replace` replaces it");
                 }
                 Ok(())
@@ -142,7 +158,8 @@ impl Run {
         let missing = folder.missing(shard)?;
         let (count, evaluations) = (missing.len(), missing.iter().map(|run| run.budget).sum());
         if count < mine.len() {
-            note!("{} of {} runs are stored already", mine.len() - count, mine.len());
+            let all = plural(mine.len(), "run");
+            note!("{} of {all} are stored already", mine.len() - count);
         }
         {
             let bar = Bar::new(evaluations, watch.clone());
@@ -159,8 +176,8 @@ impl Run {
                 (false, false) => "",
             };
             return Err(CliError::Interrupted(format!(
-                "{stored} of {} runs are stored in {}; the same command{without} goes on from there",
-                mine.len(),
+                "{stored} of {} are stored in {}; the same command{without} goes on from there",
+                plural(mine.len(), "run"),
                 folder.path().display()
             )));
         }

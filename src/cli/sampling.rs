@@ -8,11 +8,11 @@ use crate::reorientation::Sampling;
 /// At which times a motion that is written is sampled.
 #[derive(Debug, Args)]
 pub(super) struct SamplingOptions {
-    /// Seconds between the samples of motions that are written; the last sample is always the motion's end [default: 500
-    /// equal intervals, of splines the next multiple of their pieces; points with rates and accelerations keep their times]
+    /// Seconds between samples of written motions; the last sample is always the end of the motion [default: 500 equal
+    /// intervals, for splines rounded up to a multiple of their pieces; points with rates and accelerations keep their times]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, conflicts_with = "rate", value_parser = step)]
     dt: Option<Sampling>,
-    /// Samples per second of motions that are written, instead of --dt
+    /// Samples per second of written motions, instead of --dt
     #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = rate)]
     rate: Option<Sampling>,
 }
@@ -29,7 +29,7 @@ impl SamplingOptions {
         match self.choice() {
             None => Ok(()),
             Some(_) => Err(CliError::Usage {
-                message: format!("{option} is for motions that are written, expected {expected}"),
+                message: format!("{option} needs a motion to be written, expected {expected}"),
                 help: None,
             }),
         }

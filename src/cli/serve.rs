@@ -6,11 +6,10 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::check::expect_task;
 use super::family::FamilyOptions;
 use super::found::told;
 use super::motion::MotionFiles;
-use super::plan::warn_of_task;
+use super::plan::warn_of_weights;
 use super::progress::Bar;
 use super::{CliError, read_task, shown, start_worker_threads, watch};
 use crate::process::{Client, Socket, TOKEN};
@@ -19,25 +18,25 @@ use crate::reorientation::{
 };
 use crate::task::TaskTable;
 
-/// Offer a task to an optimiser of yours, which asks for costs
+/// Serve a task to an external optimiser, which asks for costs
 #[derive(Debug, Args)]
 pub(super) struct Serve {
-    /// Task file, or a robot that comes with a task; without one, the paper's task
+    /// Task file, or the name of a shipped robot, which has its own task [default: the paper's task]
     #[arg(value_name = "TASK")]
     file: Option<PathBuf>,
-    /// Variables of sine polynomials to search in: raw, scaled or time-free
+    /// Variables to search in: raw (sine polynomials only), scaled or time-free [default: time-free]
     #[arg(long, value_name = "NAME")]
     formulation: Option<String>,
     #[command(flatten)]
     family: FamilyOptions,
-    /// Seed that the optimiser is told, below 2³¹
+    /// Seed to pass to the optimiser, below 2³¹
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(..1 << 31))]
     seed: u64,
-    /// Evaluations that it may spend
+    /// Maximum number of evaluations
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..))]
     budget: u64,
-    /// Listen on a port of 127.0.0.1, or on any that is free, instead of standard input and output. Who connects has to show
-    /// the token of the variable `DRIFTLESS_TOKEN` or, if that is not set, the one that is printed
+    /// Listen on a port of 127.0.0.1, by default any free one, instead of standard input and output. Clients must send the token
+    /// in the environment variable `DRIFTLESS_TOKEN` or, if that is not set, the one that is printed
     #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "0")]
     listen: Option<u16>,
     #[command(flatten)]
@@ -50,14 +49,13 @@ impl Serve {
         self.files.check()?;
         let formulation = self.formulation()?;
         let document = read_task(self.file.as_deref())?;
-        expect_task(&document, "serve")?;
         let TaskFile { task, trajectory } = TaskFile::read(&document)?;
         let trajectory = self.family.choice().over(trajectory, false);
         let file = TaskFile { trajectory: trajectory.map_err(FamilyOptions::for_splines)?, task };
         let refused = |error| document.error_at(0..0, error, None);
         let problem = file.problem(&document)?;
         self.files.check_joints(&problem.task().robot)?;
-        warn_of_task(problem.task());
+        warn_of_weights(problem.task());
         if problem.task().already_there().is_some() {
             let task = shown(self.file.as_ref(), "the paper's task");
             let message = format!("{task}: already there: there is nothing to search");
@@ -158,7 +156,7 @@ fn usable(token: &OsStr) -> Result<String, CliError> {
     let is_plain =
         |token: &&str| token.len() <= 1000 && token.chars().all(|c| c.is_ascii_graphic());
     token.to_str().filter(is_plain).map(str::to_owned).ok_or_else(|| CliError::Usage {
-        message: format!("{TOKEN} is no token, expected 1000 letters, digits and signs at most"),
+        message: format!("{TOKEN} is not a valid token, expected at most 1000 letters, digits and punctuation characters"),
         help: None,
     })
 }

@@ -11,7 +11,7 @@ use crate::analysis::render;
 use crate::exhibit::words::plural;
 use crate::experiment::{Damage, FailedRun, Folder, Standing, Tally, standing};
 
-/// Say which runs of an experiment are done, failed or missing
+/// Show which runs of an experiment are done, failed or missing
 #[derive(Debug, Args)]
 pub(super) struct Status {
     #[command(flatten)]
@@ -154,10 +154,10 @@ fn tell(results: &Folder, standing: &Standing, batches: usize) -> Result<(), Cli
         say!("imported from {from}: runs of other programs, which can be reported and not be run");
     }
     say!(
-        "{}: {} of {} runs are stored, {} failed, {} missing; {} per table",
+        "{}: {} of {} are stored, {} failed, {} missing; {} per table",
         plan.name,
         all.stored,
-        all.planned,
+        plural(all.planned, "run"),
         all.failed,
         all.missing(),
         plural(batches, "file")

@@ -5,11 +5,12 @@ use std::path::Path;
 use std::process::Command;
 
 use clap::{Args, ValueEnum};
+use serde_json::json;
 
 use super::chosen::Chosen;
 use super::run::default_jobs;
-use super::warnings::{warn_of_budgets, warn_of_subjects};
-use super::{CliError, start_worker_threads};
+use super::warnings::warn_of_budgets;
+use super::{CliError, say_json, start_worker_threads};
 use crate::exhibit::words::plural;
 use crate::experiment::{Folder, FolderError, Plan, estimate};
 use crate::process::is_on_path;
@@ -21,28 +22,31 @@ pub(super) const WORKERS: usize = 8;
 /// How often GNU parallel tries a task; `HyperQueue` and Slurm begin those of lost workers again by themselves.
 const TRIES: u32 = 3;
 
-/// Write the job that runs an experiment on a scheduler; with --go, start it
+/// Print the job script that runs an experiment on a scheduler; with --go, submit it
 #[derive(Debug, Args)]
 pub(super) struct Submit {
     #[command(flatten)]
     chosen: Chosen,
-    /// The scheduler
+    /// Scheduler to write the job for
     #[arg(long, value_enum, value_name = "SCHEDULER")]
     to: Scheduler,
-    /// Shards, each a task of the scheduler's [default: as many as make sense]
+    /// Number of shards, each a task of the scheduler [default: chosen from the estimated time of the runs]
     #[arg(long, value_name = "N")]
     shards: Option<NonZeroUsize>,
-    /// Tasks at a time, by which the default of --shards goes; `HyperQueue` has as many as its workers take [default: of GNU
-    /// parallel as many as there are processors for; of others no limit, and shards that suit 8]
+    /// Number of tasks that run at a time; it also sets the default of --shards. `HyperQueue` runs as many as its workers take
+    /// [default: with GNU parallel, as many as the processors allow; with others unlimited, and --shards assumes 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     workers: Option<u16>,
-    /// Runs at a time in each task, and its processors
+    /// Number of runs at a time in each task, and of processors that it asks for
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
-    /// Start the job
+    /// Submit the job
     #[arg(long)]
     go: bool,
-    /// Options for the scheduler's command
+    /// Print one JSON object instead of the job alone
+    #[arg(long, conflicts_with = "go")]
+    json: bool,
+    /// Options to pass to the scheduler's command
     #[arg(last = true, value_name = "OPTION")]
     options: Vec<String>,
 }
@@ -64,7 +68,6 @@ impl Submit {
         let experiment = self.chosen.read()?;
         let is_trusted = self.chosen.tell_programs(&experiment)?;
         let plan = experiment.plan()?;
-        warn_of_subjects(&plan);
         warn_of_budgets(&plan);
         let folder = self.chosen.folder(&plan);
         check_folder(&folder, &plan)?;
@@ -78,10 +81,21 @@ impl Submit {
                 help: Some("without --go the job is shown, to be started elsewhere".to_owned()),
             });
         }
+        if self.json {
+            return say_json(&json!({
+                "experiment": plan.name,
+                "folder": absolute(&folder)?,
+                "scheduler": program,
+                "runs": plan.runs.len(),
+                "shards": shards,
+                "jobs": self.jobs,
+                "job": job,
+            }));
+        }
         say!("{job}");
         let (runs, each) = (plural(plan.runs.len(), "run"), plural(shards, "task"));
         if !self.go {
-            note!("note: {runs} in {each}; pass --go to start it, or run it in a shell");
+            note!("note: {runs} in {each}; pass --go to submit the job, or run it in a shell");
             return Ok(());
         }
         note!("note: {runs} in {each}");

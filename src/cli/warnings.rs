@@ -1,16 +1,11 @@
 //! What is worth a warning before work begins.
 
+use crate::exhibit::words::plural;
 use crate::experiment::{Plan, Store};
 
 /// Says what is doubtful about an experiment's subjects, once each.
 pub(super) fn warn_of_subjects(plan: &Plan) {
-    let mut told = Vec::new();
-    for warning in plan.instances.iter().filter_map(|instance| instance.subject.warning()) {
-        if !told.contains(&warning) {
-            note!("warning: {warning}");
-            told.push(warning);
-        }
-    }
+    plan.instances.iter().for_each(|instance| super::warn_once(instance.subject.warning()));
 }
 
 /// Says when a comparison is not one at the same price.
@@ -33,8 +28,8 @@ pub(super) fn warn_of_damage(store: &Store) {
         note!("warning: {damage}; its batch is left out");
     }
     if damaged.len() > MOST_NAMED {
-        let more = damaged.len() - MOST_NAMED;
-        note!("warning: {more} more files cannot be used; `driftless status --json` names all");
+        let more = plural(damaged.len() - MOST_NAMED, "more file");
+        note!("warning: {more} cannot be used; `driftless status --json` names all");
     }
     if damaged.iter().any(|damage| damage.may_be_whole) {
         note!(

@@ -11,6 +11,7 @@ use super::store::{Damage, Store, StoreError};
 use super::subject::Subject;
 use super::value::Judgement;
 use crate::search::{Failure, Oracle, Rng, Watch};
+use crate::words::plural;
 
 /// Told of every run that ends.
 pub trait Progress: Sync {
@@ -164,7 +165,8 @@ fn judge(subject: &dyn Subject, space: &str, x: &[f64]) -> Result<Option<Judgeme
     let expected = subject.measures().len();
     match judgement.as_ref().map(|judgement| judgement.measures.len()) {
         Some(found) if found != expected => Err(Failure::new(format!(
-            "found {found} values in a judgement, expected {expected}, one per measure"
+            "found {} in a judgement, expected {expected}, one per measure",
+            plural(found, "value")
         ))),
         _ => Ok(judgement),
     }

@@ -14,6 +14,7 @@ use super::files::{beside, files};
 use super::lines::Lines;
 use super::{Import, bbob};
 use crate::experiment::{DataFormat, EXPORTED_SUITE, ForeignOptimiser, Provenance};
+use crate::words::plural;
 
 /// Trial numbers of each instance in an export of this program: instance i with seed s is trial 2,000,000 i + s.
 const SEEDS: u64 = 2_000_000;
@@ -153,7 +154,8 @@ impl Entry {
                     let Some(section) = sections.next()? else {
                         let expected = table.trials.len();
                         let message = format!(
-                            "found {place} runs, expected {expected} as in {}",
+                            "found {}, expected {expected} as in {}",
+                            plural(place, "run"),
                             index.display()
                         );
                         return Err(ImportError::of(path, message));

@@ -18,6 +18,7 @@ use super::files::{beside, files, open};
 use super::lines::{Lines, cut};
 use super::{Import, bbob};
 use crate::experiment::{DataFormat, EXPORTED_SUITE, ForeignOptimiser, Provenance};
+use crate::words::plural;
 
 /// The largest index \[bytes\].
 const LARGEST_INDEX: u64 = 1 << 30;
@@ -97,9 +98,9 @@ fn read_index(path: &Path, collected: &mut Collected) -> Result<(), ImportError>
         let mut tables = Tables::open(&table)?;
         for (place, run) in scenario.runs.iter().enumerate() {
             let Some(mut rows) = tables.next()? else {
-                let (found, expected) = (place, scenario.runs.len());
+                let (found, expected) = (plural(place, "run"), scenario.runs.len());
                 let message =
-                    format!("found {found} runs, expected {expected} as in {}", path.display());
+                    format!("found {found}, expected {expected} as in {}", path.display());
                 return Err(ImportError::of(&table, message));
             };
             if rows.last() > run.evals {

@@ -106,7 +106,7 @@ fn csv_error(path: &Path, error: csv::Error) -> ImportError {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("found {len} fields, expected {expected_len} as in the heading")
         }
-        csv::ErrorKind::Utf8 { .. } => "found bytes that are no text, expected UTF-8".to_owned(),
+        csv::ErrorKind::Utf8 { .. } => "found bytes that are not text, expected UTF-8".to_owned(),
         _ => "found no comma-separated values".to_owned(),
     };
     ImportError::Content { path: path.to_owned(), line, message }

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, SeqAccess, Visitor};
 
 use crate::search::{Failure, Points};
+use crate::words::plural;
 
 /// One point, or a list of points.
 #[derive(Debug, Default, PartialEq)]
@@ -26,7 +27,11 @@ impl Coordinates {
     /// The points, which must have so many variables.
     pub(super) fn points(&self, dimension: usize) -> Result<Points, Failure> {
         if let Some(found) = self.lengths.iter().find(|length| **length != dimension) {
-            return Err(format!("sent a point with {found} variables, expected {dimension}").into());
+            return Err(format!(
+                "sent a point with {}, expected {dimension}",
+                plural(*found, "variable")
+            )
+            .into());
         }
         let mut points = Points::zeros(dimension, self.len());
         for (i, x) in self.values.chunks_exact(dimension).enumerate() {

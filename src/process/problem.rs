@@ -10,8 +10,9 @@ use super::answer::{self, VERSION};
 use super::command::{Command, Patience};
 use super::conversation::Conversation;
 use super::numbers::Numbers;
-use super::request::{parsed, plural, shortened};
+use super::request::{parsed, shortened};
 use crate::search::{Bounds, Evaluation, Failure, Points, Problem, Stop, Watch};
+use crate::words::plural;
 
 /// By how much a cost may be below the least one, as a share of it or of one.
 const ROUNDING: f64 = 1e-9;
@@ -141,7 +142,8 @@ impl Program {
             };
         }
         Err(process.failure(&format!(
-            "told of {dimension} variables, {count} lower and {others} upper bounds"
+            "told of {}, {count} lower and {others} upper bounds",
+            plural(dimension, "variable")
         )))
     }
 

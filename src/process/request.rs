@@ -83,11 +83,6 @@ fn unreadable(line: &str, error: &serde_json::Error) -> Failure {
     format!("sent a line that cannot be read: {error}{hint}: `{}`", shortened(line)).into()
 }
 
-/// So many things, in words.
-pub(super) fn plural(count: usize, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
-}
-
 /// The beginning of a line.
 pub(super) fn shortened(line: &str) -> String {
     const LONGEST: usize = 120;

@@ -8,6 +8,7 @@ use super::conversation::Conversation;
 use super::numbers::Coordinates;
 use super::request::Request;
 use crate::search::{Bounds, Oracle, Rng, Stop};
+use crate::words::plural;
 
 /// What a solver says of itself; nothing need be said.
 #[derive(Debug, Deserialize)]
@@ -113,7 +114,8 @@ impl<'a> Session<'a> {
         let wrong = match x.single() {
             Err(failure) => failure.reason().to_owned(),
             Ok(x) if x.len() != bounds.len() => {
-                format!("sent a point with {} variables, expected {}", x.len(), bounds.len())
+                let found = plural(x.len(), "variable");
+                format!("sent a point with {found}, expected {}", bounds.len())
             }
             Ok(x) => {
                 let mut x = x.to_vec();

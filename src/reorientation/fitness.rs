@@ -25,7 +25,7 @@ pub struct Reorientation<F: Family = SinePolynomial> {
     /// clones.
     fine: Arc<[OnceLock<Arc<Tables<F>>>; 2]>,
     width: Width,
-    /// The task with robots as they may be, which the cost looks at, too.
+    /// The task with sampled robots, which the cost looks at, too.
     variants: Arc<[Self]>,
 }
 

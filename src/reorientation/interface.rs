@@ -188,7 +188,7 @@ impl Subject for TaskSubject {
     }
 
     fn warning(&self) -> Option<String> {
-        self.reorientation().task().robot.warning()
+        self.reorientation().task().robot.unexpected_warning()
     }
 
     fn exhibits(&self, results: &Results<'_>) -> Exhibits {

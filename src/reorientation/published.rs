@@ -16,6 +16,7 @@ use crate::momentum::base_twist;
 use crate::robot::Robot;
 use crate::task::{Posture, Task, TaskTable};
 use crate::trajectory::{Path, Peak, Peaks};
+use crate::words::plural;
 
 /// How a published motion is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -162,8 +163,9 @@ impl ReplayFile {
                 for list in [alpha6, alpha7] {
                     let found = list.get_ref().len();
                     if found != joints {
+                        let found = plural(found, "value");
                         let message =
-                            format!("found {found} values, expected {joints}, one per joint{own}");
+                            format!("found {found}, expected {joints}, one per joint{own}");
                         return error(list.span(), message);
                     }
                 }
@@ -175,7 +177,8 @@ impl ReplayFile {
                 let terms = rows.first().map_or(0, Vec::len);
                 if terms == 0 || rows.len() != joints || rows.iter().any(|row| row.len() != terms) {
                     let message = format!(
-                        "expected {joints} rows, one per joint{own}, of equally many coefficients"
+                        "expected {}, one per joint{own}, with the same number of coefficients",
+                        plural(joints, "row")
                     );
                     return error(list.span(), message);
                 }

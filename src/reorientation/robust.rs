@@ -1,4 +1,4 @@
-//! What the residuals of robots as they may be add to the cost.
+//! What the residuals of sampled robots add to the cost.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::task::{PathLimits, Robust, RobustOf, Task};
 use crate::trajectory::Family;
 
 impl<F: Family> Reorientation<F> {
-    /// The task with robots as they may be, if it asks for any.
+    /// The task with sampled robots, if it asks for any.
     pub(super) fn variants_of(task: &Task, family: &F, accuracy: Accuracy) -> Arc<[Self]> {
         let Some(robust) = &task.robust else { return Arc::default() };
         let path = PathLimits::default();
@@ -24,7 +24,7 @@ impl<F: Family> Reorientation<F> {
         drawn.map(|task| Self::over(Arc::new(task), family.clone(), accuracy)).collect()
     }
 
-    /// What robots as they may be add to the cost.
+    /// What sampled robots add to the cost.
     pub(super) fn robust_cost(&self, coefficients: &[f64]) -> f64 {
         let Some(Robust { of, weight, .. }) = &self.task().robust else { return 0.0 };
         // With momentum no robust plans are asked for, so the duration does not matter.

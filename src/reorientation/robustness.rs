@@ -9,7 +9,7 @@ use super::any::AnyReorientation;
 use crate::robot::RobotError;
 use crate::task::{PathLimits, Task, Unknown};
 
-/// Residuals of one motion over robots as they may be.
+/// Residuals of one motion over sampled robots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robustness {
     /// The base's error angle \[rad\] with each of the robots that were drawn, in growing order.

@@ -17,7 +17,7 @@ pub(super) struct Terms {
 }
 
 impl Terms {
-    /// With `K_b`, of which `K_t` is the rest of one, and what a degree costs with robots as they may be. That is added to what a degree
+    /// With `K_b`, of which `K_t` is the rest of one, and what a degree costs with sampled robots. That is added to what a degree
     /// costs with the robot itself, or that one would be kept off its goal to bring others nearer.
     pub(super) fn new(base_weight: f64, robust_weight: f64) -> Self {
         Self { error: Self::error_weight(base_weight + robust_weight), duration: 1.0 - base_weight }
@@ -49,7 +49,7 @@ impl Terms {
         Term::max(weight.to_degrees(), turns).at_least(0.0)
     }
 
-    /// What errors of the base with robots as they may be add to the cost, where they weigh so much beside the base's own.
+    /// What errors of the base with sampled robots add to the cost, where they weigh so much beside the base's own.
     pub(super) fn robust(weight: f64, errors: Vec<Piece>) -> Term {
         Term::max(Self::error_weight(weight), errors).at_least(0.0)
     }

@@ -311,6 +311,14 @@ impl Robot {
         }
         (!warnings.is_empty()).then(|| format!("robot `{}`: {}", self.name, warnings.join(". ")))
     }
+
+    /// The same; none where a robot that comes with the crate has it too, since that is as published.
+    pub fn unexpected_warning(&self) -> Option<String> {
+        let warning = self.warning()?;
+        let shipped = Self::embedded(&self.name).and_then(|file| Self::from_document(&file).ok());
+        let is_known = shipped.is_some_and(|own| own.warning().as_ref() == Some(&warning));
+        (!is_known).then_some(warning)
+    }
 }
 
 /// Where the first joint that moves sits on the base. All links before it are fixed.

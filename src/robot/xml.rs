@@ -6,6 +6,7 @@ use roxmltree::{Attribute, Node};
 use toml::Spanned;
 
 use crate::input::{Document, InputError};
+use crate::words::plural;
 
 pub(super) struct Reader<'a> {
     pub(super) document: &'a Document,
@@ -68,7 +69,7 @@ impl Reader<'_> {
         let found = numbers.len();
         <[f64; N]>::try_from(numbers).map_err(|_| match found {
             0 => error("nothing".to_owned()),
-            _ => error(format!("{found} numbers")),
+            _ => error(plural(found, "number")),
         })
     }
 

@@ -14,6 +14,7 @@ use super::terms::PieceId;
 use super::terms::{Linearisation, Multipliers, Shape};
 use super::timed::{Bend, Fold, LinearLimits, TimedParts, TimedWeights};
 use super::watch::Watch;
+use crate::words::plural;
 
 /// Why an optimiser has to stop.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -239,8 +240,10 @@ impl<'a> Oracle<'a> {
         self.check_dimension(points.dimension())?;
         if out.len() < points.len() {
             let (room, count) = (out.len(), points.len());
-            let reason =
-                format!("found room for {room} evaluations, expected {count}, one per point");
+            let reason = format!(
+                "found room for {}, expected {count}, one per point",
+                plural(room, "evaluation")
+            );
             return Err(Failure::new(reason).into());
         }
         let affordable = usize::try_from(self.remaining()).unwrap_or(usize::MAX);
@@ -265,8 +268,8 @@ impl<'a> Oracle<'a> {
         self.in_problem += clock.elapsed();
         outcome?;
         if answers != count {
-            let reason =
-                format!("found {answers} answers to a batch of {count} points, expected {count}");
+            let (answers, points) = (plural(answers, "answer"), plural(count, "point"));
+            let reason = format!("found {answers} to a batch of {points}, expected {count}");
             return Err(Failure::new(reason).into());
         }
         if cut.is_some() { Err(Stop::BudgetSpent) } else { Ok(()) }
@@ -422,7 +425,8 @@ impl<'a> Oracle<'a> {
         if found == expected {
             return Ok(());
         }
-        let reason = format!("found a point with {found} variables, expected {expected}");
+        let reason =
+            format!("found a point with {}, expected {expected}", plural(found, "variable"));
         Err(Failure::new(reason).into())
     }
 

@@ -10,6 +10,7 @@ use toml::Spanned;
 
 use crate::input::{Document, Finite, InputError, Positive};
 use crate::robot::{Robot, find_joint};
+use crate::words::plural;
 
 /// Values of joints: one for all, one each in the robot's order, or by name.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,8 +71,8 @@ impl<T: Copy> JointValues<T> {
             }
             Self::Each(values) => {
                 let mut message = format!(
-                    "found {} values, expected {all}, one for each joint of robot `{}`",
-                    values.len(),
+                    "found {}, expected {all}, one for each joint of robot `{}`",
+                    plural(values.len(), "value"),
                     robot.name()
                 );
                 if leading < all {

@@ -64,14 +64,14 @@ pub struct Task {
     pub path: PathLimits,
     /// What is not known exactly, where the task says so.
     pub uncertainty: Option<Uncertainty>,
-    /// Whether the base is to end near its goal with robots as they may be, too.
+    /// Whether the base is to end near its goal with sampled robots, too.
     pub robust: Option<Robust>,
 }
 
 impl Task {
     /// All that a motion's cost follows from, as JSON: [`Robot::identity`], `start` and `goal` with `joints`
     /// \[rad or m\] and `base`, a quaternion `w, x, y, z` from base axes to inertial axes, `limits` on rate,
-    /// acceleration and jerk per joint, `base_weight` and, where anything is asked for on the way, `path`, or of robots as they may be,
+    /// acceleration and jerk per joint, `base_weight` and, where anything is asked for on the way, `path`, or of sampled robots,
     /// `robust`; `momentum` and `least_duration` where they are not zero.
     #[cfg(feature = "harness")]
     pub(crate) fn identity(&self) -> Value {

@@ -102,7 +102,7 @@ pub(super) struct RobustTable {
     seed: Option<u64>,
 }
 
-/// Which of the residuals of robots as they may be counts.
+/// Which of the residuals of sampled robots counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RobustOf {
@@ -113,7 +113,7 @@ pub enum RobustOf {
     Worst,
 }
 
-/// A wish that the base ends near its goal with robots as they may be, too.
+/// A wish that the base ends near its goal with sampled robots, too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robust {
     /// What is not known, how many robots are drawn, and the seed of the random numbers.
@@ -206,7 +206,7 @@ impl Uncertainty {
         Ok(Task { robot: task.robot.varied(factors, shift, &offsets)?.into(), ..task.clone() })
     }
 
-    /// Tasks as they may be, each unknown drawn for itself.
+    /// Sampled tasks, each unknown drawn independently.
     pub fn draw(&self, task: &Task) -> Result<Vec<Task>, RobotError> {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let unknowns = self.unknowns(&task.robot);

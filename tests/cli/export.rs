@@ -268,7 +268,7 @@ fn best_motions_are_exported() {
     let steps = times.len() - 1;
     assert!(times[..steps].iter().enumerate().all(|(k, time)| *time == k as f64 / 50.0));
     for (args, expected) in [
-        (["--format", "ioh", "--dt", "0.1"], "--dt is for motions that are written"),
+        (["--format", "ioh", "--dt", "0.1"], "--dt needs a motion to be written"),
         (["--format", "csv", "--dt", "1e-9"], "expected 1000000 samples or fewer"),
     ] {
         let refused = folder.run(&[&["export", "results", "--out", "none"], &args[..]].concat());

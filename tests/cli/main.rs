@@ -7,12 +7,14 @@ mod experiments;
 mod export;
 mod folder;
 mod followers;
+mod help;
 #[cfg(feature = "harness")]
 mod import;
 #[cfg(feature = "harness")]
 mod import_instances;
 #[cfg(feature = "harness")]
 mod import_mistakes;
+mod json;
 mod motions;
 mod on_the_way;
 #[cfg(feature = "harness")]

@@ -339,7 +339,7 @@ fn senseless_samplings_are_refused() {
     assert_eq!(output.status.code(), Some(2));
     let message = said(&stderr(&output));
     assert!(
-        message.contains("--dt is for motions that are written, expected --motion FILE"),
+        message.contains("--dt needs a motion to be written, expected --motion FILE"),
         "{message}"
     );
     let output = folder.run(&[&motion[..], &["--dt", "1e-9"]].concat());

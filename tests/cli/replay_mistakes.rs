@@ -104,7 +104,7 @@ fn files_that_are_no_message() {
     for (content, expected) in [
         (Vec::new(), ": found an empty file, expected a ROS JointTrajectory"),
         (b"---\n".to_vec(), ": found an empty file, expected a ROS JointTrajectory"),
-        ([two.as_bytes(), b"# \xe9\n"].concat(), ": found bytes that are no text, expected UTF-8"),
+        ([two.as_bytes(), b"# \xe9\n"].concat(), ": found bytes that are not text, expected UTF-8"),
         (two.as_bytes()[..two.len() - 8].to_vec(), ":6: expected a ROS JointTrajectory: "),
         (b"- 1\n- 2\n".to_vec(), ":1: expected a ROS JointTrajectory: expected mapping start"),
         ((0..=255).cycle().take(5000).collect(), ":1: expected a ROS JointTrajectory: "),
@@ -189,7 +189,7 @@ fn columns_of_tables() {
         refuses("t.csv", content, expected);
     }
     let not_text = [table(ROW_0).as_bytes(), b"\xe9,1,1,1,1,1,1\n"].concat();
-    refuses("t.csv", not_text, ":3: found bytes that are no text, expected UTF-8");
+    refuses("t.csv", not_text, ":3: found bytes that are not text, expected UTF-8");
     let garbage: Vec<u8> = (0..=255).cycle().take(5000).collect();
     refuses("t.csv", garbage, ":1: found the columns ");
 }
@@ -253,7 +253,7 @@ fn arguments() {
         (&["replay", "t.toml", "--unit", "rad"], "found --unit, which is for a trajectory"),
         (
             &["replay", "t.yaml", "--task", "t.toml"],
-            "t.toml is a motion to replay, and `replay` takes a task",
+            "t.toml is a motion file, expected a task file",
         ),
         (&["replay", "none.yaml"], "cannot read none.yaml"),
         (&["replay", "t.csv", "--task", "none.toml"], "cannot read none.toml"),

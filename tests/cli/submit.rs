@@ -73,7 +73,7 @@ fn jobs_are_shown_and_nothing_is_written() {
     ] {
         let output = folder.run(&[&["submit", "small.toml", "--shards", "4"], args].concat());
         assert_eq!(job(&folder, &output), expected);
-        assert!(stderr(&output).contains(" runs in 4 tasks; pass --go to start it"));
+        assert!(stderr(&output).contains(" runs in 4 tasks; pass --go to submit the job"));
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
@@ -100,7 +100,7 @@ fn go_starts_the_job() {
         let output = run(&folder, &args);
         assert!(output.status.success(), "{}", stderr(&output));
         assert!(
-            stdout(&output).contains("shard 1/4: its 4 runs are stored"),
+            stdout(&output).contains("shard 1/4: 4 runs, all stored in"),
             "{}",
             stdout(&output)
         );
@@ -170,7 +170,9 @@ fn the_number_of_shards_follows_from_the_time_of_runs() {
     let line = stdout(&output);
     let line = line.lines().find(|line| line.contains("shards make sense")).unwrap();
     assert!(
-        line.contains(" for 8 workers of a scheduler; with one each they would be idle for "),
+        line.contains(
+            " for 8 workers of a scheduler; with one shard each, the workers would be idle for "
+        ),
         "{line}"
     );
     let job = job(&folder, &folder.run(&["submit", "small.toml", "--to", "hyperqueue"]));

@@ -368,7 +368,6 @@ fn check_prints_what_is_resolved() {
         let output = folder.run(&["check", &format!("{name}.toml")]);
         assert!(output.status.success(), "{}", stderr(&output));
         insta::assert_snapshot!(format!("check_{name}"), without_last_digits(&stdout(&output)));
-        assert_eq!(stderr(&output).matches("breaks the triangle inequality").count(), 1);
         // What is printed is itself a file that says the same.
         let again = Folder::new().with("again.toml", stdout(&output)).run(&["check", "again.toml"]);
         assert_eq!(stdout(&again), stdout(&output));

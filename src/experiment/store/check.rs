@@ -10,6 +10,7 @@ use super::stack::only;
 use crate::digest::digest;
 use crate::experiment::record::IMPORTED_STATUS;
 use crate::experiment::schema::{Cell, Column, FORMAT, clocks, runs, traces};
+use crate::words::plural;
 
 /// For each key the lists of its run that have a length of their own, by their columns.
 pub(super) type Lengths = HashMap<String, Arc<[(String, usize)]>>;
@@ -138,7 +139,10 @@ fn check_lists(frame: &DataFrame, keys: &StringChunked, lengths: &Lengths) -> Re
             if let Some(found) = lists.get_as_series(row).map(|list| list.len())
                 && found != *expected
             {
-                return Err(format!("has {found} numbers in `{name}`, expected {expected}"));
+                return Err(format!(
+                    "has {} in `{name}`, expected {expected}",
+                    plural(found, "number")
+                ));
             }
         }
     }

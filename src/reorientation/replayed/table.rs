@@ -71,7 +71,7 @@ fn csv_error(error: csv::Error, source: Source<'_>) -> TrajectoryError {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("found {len} fields, expected {expected_len} as in the first line")
         }
-        csv::ErrorKind::Utf8 { .. } => "found bytes that are no text, expected UTF-8".to_owned(),
+        csv::ErrorKind::Utf8 { .. } => "found bytes that are not text, expected UTF-8".to_owned(),
         _ => "found no comma-separated values".to_owned(),
     };
     source.error_at(line, message)

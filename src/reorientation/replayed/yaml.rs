@@ -217,7 +217,7 @@ fn wrong(error: serde_saphyr::Error, source: Source<'_>) -> TrajectoryError {
     let text = error.to_string();
     let message = match error {
         Error::IOError { cause } if cause.kind() == ErrorKind::InvalidData => {
-            "found bytes that are no text, expected UTF-8".to_owned()
+            "found bytes that are not text, expected UTF-8".to_owned()
         }
         Error::IOError { cause } => return source.unreadable(cause),
         // What the reader says of its own limits is for programmers.

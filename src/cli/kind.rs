@@ -1,0 +1,156 @@
+//! What a file is, so that a verb given another than it takes can say so.
+
+use std::path::Path;
+
+use super::CliError;
+use crate::input::{Document, InputError};
+use crate::reorientation::GivenTrajectory;
+use crate::robot::Robot;
+
+/// What a file or folder is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Robot,
+    /// A file with a table `[motion]`.
+    Motion,
+    Experiment,
+    Task,
+    /// A motion of another program, or one written by `--motion`.
+    Trajectory,
+    Results,
+    Folder,
+}
+
+/// Keys that only an experiment has.
+const EXPERIMENT_KEYS: [&str; 9] = [
+    "name",
+    "optimiser",
+    "seeds",
+    "budget",
+    "sweep",
+    "targets",
+    "functions",
+    "problem",
+    "imported",
+];
+
+impl Kind {
+    /// What a file is, by its top-level keys; none where these do not tell.
+    pub(super) fn of(document: &Document) -> Result<Option<Self>, InputError> {
+        let has = |keys: &[&str]| -> Result<bool, InputError> {
+            keys.iter().try_fold(false, |found, key| Ok(found || document.key(key)?.is_some()))
+        };
+        Ok(if document.is_xml() || has(&["joint", "base", "link", "urdf", "arm"])? {
+            Some(Self::Robot)
+        } else if has(&["motion"])? {
+            Some(Self::Motion)
+        } else if has(&EXPERIMENT_KEYS)? {
+            Some(Self::Experiment)
+        } else {
+            has(&["task", "trajectory"])?.then_some(Self::Task)
+        })
+    }
+
+    /// What a path is that need not be read for it.
+    fn of_path(path: &Path) -> Option<Self> {
+        if path.is_dir() {
+            let is_results = path.join("experiment.toml").is_file();
+            return Some(if is_results { Self::Results } else { Self::Folder });
+        }
+        if path.is_file() {
+            return GivenTrajectory::has_name(path).then_some(Self::Trajectory);
+        }
+        path.to_str().and_then(Robot::embedded).map(|_| Self::Robot)
+    }
+
+    /// With its article.
+    fn described(self) -> &'static str {
+        match self {
+            Self::Robot => "a robot",
+            Self::Motion => "a motion file",
+            Self::Experiment => "an experiment file",
+            Self::Task => "a task file",
+            Self::Trajectory => "a trajectory",
+            Self::Results => "a folder of results",
+            Self::Folder => "a folder",
+        }
+    }
+
+    /// Which verbs take it, and what is missing for the one that was asked for.
+    fn help(self, expected: Self, path: &Path) -> Option<String> {
+        let robot = path.display();
+        let help = match (self, expected) {
+            (Self::Robot, Self::Task) => format!(
+                "a task names it: `[task]` with `robot = \"{robot}\"`, a start, a goal and limits"
+            ),
+            (Self::Robot, _) => {
+                "`driftless check` and `driftless robot convert` take it".to_owned()
+            }
+            (Self::Task, Self::Experiment) => {
+                "`driftless plan` takes it; an experiment file also has `name` and `[[optimiser]]`"
+                    .to_owned()
+            }
+            (Self::Task, Self::Motion) => {
+                "`driftless plan` takes it; a motion file also has a table `[motion]`".to_owned()
+            }
+            (Self::Task, _) => "`driftless plan` takes it".to_owned(),
+            (Self::Motion, _) => "`driftless replay` takes it".to_owned(),
+            (Self::Trajectory, _) => {
+                "`driftless replay` takes it, and checks it against the task of `--task`".to_owned()
+            }
+            (Self::Experiment, _) => "`driftless run` takes it".to_owned(),
+            (Self::Results, _) => {
+                "`driftless report`, `status`, `export` and `compact` take it".to_owned()
+            }
+            (Self::Folder, _) => return None,
+        };
+        Some(help)
+    }
+}
+
+/// The error of a path that is of another kind.
+fn another(path: &Path, found: Kind, expected: Kind) -> CliError {
+    CliError::Usage {
+        message: format!(
+            "{} is {}, expected {}",
+            path.display(),
+            found.described(),
+            expected.described()
+        ),
+        help: found.help(expected, path),
+    }
+}
+
+/// Reads a file of a kind.
+pub(super) fn read(path: &Path, expected: Kind) -> Result<Document, CliError> {
+    refuse_others(path, expected)?;
+    let document = Document::read(path)?;
+    expect(&document, expected)?;
+    Ok(document)
+}
+
+/// Whether a path, of which nothing is read, may be what is expected.
+pub(super) fn refuse_others(path: &Path, expected: Kind) -> Result<(), CliError> {
+    match Kind::of_path(path) {
+        Some(found) if found != expected => Err(another(path, found, expected)),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a file is of a kind, as far as its keys tell.
+pub(super) fn expect(document: &Document, expected: Kind) -> Result<(), CliError> {
+    match Kind::of(document)? {
+        Some(found) if found != expected => Err(another(&document.path, found, expected)),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a file, where folders are expected, is of a kind that can be named.
+#[cfg(feature = "harness")]
+pub(super) fn refuse_file(path: &Path, expected: Kind) -> Result<(), CliError> {
+    let read = Document::read(path).and_then(|document| Kind::of(&document));
+    match Kind::of_path(path).or(read.ok().flatten()) {
+        Some(found) => Err(another(path, found, expected)),
+        None => Ok(()),
+    }
+}
