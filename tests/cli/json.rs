@@ -1,5 +1,6 @@
 //! `--json`: every object that a verb prints can be read, and says what the text says.
 
+#[cfg(feature = "harness")]
 use std::collections::BTreeSet;
 
 use serde_json::Value;
@@ -13,6 +14,7 @@ fn json(folder: &Folder, args: &[&str]) -> Value {
 }
 
 /// The names of an object's fields, as `docs/reference/json-verbs.md` has them.
+#[cfg(feature = "harness")]
 fn fields(value: &Value) -> BTreeSet<&str> {
     value.as_object().unwrap().keys().map(String::as_str).collect()
 }
