@@ -10,8 +10,9 @@ use std::process::Command;
 
 use tempfile::TempDir;
 
-/// What takes the place of longer runs.
-const SHORT: &str = " --seeds 2 --budget 300";
+/// What makes runs and plans of `sh` blocks short.
+const SHORT: [(&str, &str); 2] =
+    [("driftless run ", " --seeds 2 --budget 300"), ("driftless plan ", " --budget 200")];
 
 #[derive(Debug, PartialEq)]
 enum Part {
@@ -107,9 +108,10 @@ struct Sandbox(TempDir);
 impl Sandbox {
     /// What is printed, errors and output in the order in which they come; fails where the command does.
     fn run(&self, line: &str) -> String {
-        let short = line.starts_with("driftless run ") && !line.contains(" --budget");
-        let line = format!("{line}{}", if short { SHORT } else { "" });
-        self.run_as_it_is(&line)
+        let is_open =
+            |(verb, _): &&(&str, &str)| line.starts_with(verb) && !line.contains(" --budget");
+        let short = SHORT.iter().find(is_open).map_or("", |(_, options)| options);
+        self.run_as_it_is(&format!("{line}{short}"))
     }
 
     fn run_as_it_is(&self, line: &str) -> String {
