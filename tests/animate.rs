@@ -77,7 +77,7 @@ fn what_is_wrong_is_told() {
         (&["--out", "film.gif", "--size", "99999x99999"], "expected a width and a height"),
         (&["--out", "film.gif", "--speed", "0"], "expected a number from 0.001 to 1000"),
         (&["--out", "film.gif", "--view", "1,200"], "expected azimuth and elevation"),
-        (&["--out", "film.gif", "task.toml"], "missing field `motion`"),
+        (&["--out", "film.gif", "task.toml"], "is a task file, expected a motion file"),
         (&["--out", "film.gif", "--task", "task.toml"], "found --task, which is for a trajectory"),
         (&["--out", "film.gif", "--task", "task.toml", "bad.csv"], "bad.csv"),
         (&["--out", "film.gif", "long.toml"], "pictures of a motion of 10000000.000 s"),

@@ -206,7 +206,7 @@ fn changes() -> Vec<(&'static str, &'static str, Change)> {
         ("runs", "has 3 numbers in `x`", of_table("runs", |f| with(f, list("x", &[0.1; 3])))),
         (
             "runs",
-            "has 1 numbers in `coefficients`, expected 12",
+            "has 1 number in `coefficients`, expected 12",
             of_table("runs", |frame| with(frame, list("coefficients", &[0.1]))),
         ),
         ("runs", "in the column `seconds`", real("seconds", Some(f64::NAN))),

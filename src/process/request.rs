@@ -138,6 +138,6 @@ mod tests {
         assert!(wrong(r#"{"x": "#).contains("cannot be read"));
         let (_, x) = asked(r#"{"x": [[1, 2], [3]]}"#);
         let error = x.points(2).unwrap_err();
-        assert_eq!(error.to_string(), "sent a point with 1 variables, expected 2");
+        assert_eq!(error.to_string(), "sent a point with 1 variable, expected 2");
     }
 }

@@ -97,7 +97,7 @@ fn mistakes_are_named_and_leave_nothing() {
             ioh("{\"instance\": 1, -> {\"instance\": 1, \"seed\": 2,"),
             "with a seed and without, expected all to have one, or none",
         ),
-        ("ioh", table("evaluations raw_y\n1 2.5\n"), "found 1 runs, expected 4"),
+        ("ioh", table("evaluations raw_y\n1 2.5\n"), "found 1 run, expected 4"),
         ("ioh", table("evaluations raw_y\n1 2.5\n2 x\n"), "DIM2.dat:3: found `x`, expected a cost"),
         (
             "ioh",
@@ -140,7 +140,7 @@ fn mistakes_are_named_and_leave_nothing() {
         (
             "coco",
             coco(head, "a.dat, 1:1|1, 2:1|1", "%\n1 0 1 1 1\n"),
-            "a.dat: found 1 runs, expected 2",
+            "a.dat: found 1 run, expected 2",
         ),
         (
             "coco",

@@ -279,7 +279,11 @@ fn a_folder_for_mujoco_is_written_once() {
     assert!(said(&stderr(&again)).contains("cannot write m.mujoco"), "{}", stderr(&again));
     let some = folder.run(&["plan", "task.toml", "--motion", "n.mujoco", "--joints", "left_*"]);
     assert_eq!(some.status.code(), Some(2));
-    assert!(stderr(&some).contains("a motion for MuJoCo has all joints"), "{}", stderr(&some));
+    assert!(
+        stderr(&some).contains("a motion for MuJoCo always has all joints"),
+        "{}",
+        stderr(&some)
+    );
 }
 
 /// Of a task of several motions each has its own samples; the base stays where it is when a target is caught, though the system's

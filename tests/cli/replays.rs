@@ -300,15 +300,26 @@ fn faults_are_told_by_how_much() {
     assert!(stdout(&output).contains(told), "{}", stdout(&output));
 }
 
-/// A replayed trajectory can be written as other motions are, sampled anew, and is then the same.
+/// A replayed trajectory can be written as other motions are, and is then the same: at its own points, as it has accelerations, or
+/// sampled anew.
 #[test]
 fn replayed_motions_are_written() {
     let file = format!("{}/tests/reference/replay/accelerations.yaml", env!("CARGO_MANIFEST_DIR"));
     let folder = Folder::new();
     let first = json(&folder, &["replay", &file, "--json", "--motion", "again.csv"]);
     let again = json(&folder, &["replay", "again.csv", "--json"]);
-    assert_eq!(again["points"], 501);
-    near(&again["residual_deg"], number(&first["residual_deg"]), 1e-6);
+    assert_eq!(again["points"], first["points"]);
+    near(&again["residual_deg"], number(&first["residual_deg"]), 1e-9);
+    for (joint, again) in
+        first["joints"].as_array().unwrap().iter().zip(again["joints"].as_array().unwrap())
+    {
+        near(&again["jerk"]["peak"], number(&joint["jerk"]["peak"]), 1e-6);
+    }
+    let fine = ["replay", &file, "--json", "--motion", "fine.csv", "--dt", "0.01"];
+    json(&folder, &fine);
+    let fine = json(&folder, &["replay", "fine.csv", "--json"]);
+    assert!(number(&fine["points"]) > 500.0, "{}", fine["points"]);
+    near(&fine["residual_deg"], number(&first["residual_deg"]), 1e-6);
     let text = fs::read_to_string(folder.path().join("again.csv")).unwrap();
     let last: Vec<f64> = text
         .lines()
