@@ -78,7 +78,7 @@ impl Check {
         let document = if let Some((_, document)) = shipped(&self.file) {
             document
         } else {
-            kind::refuse_others(&self.file, Kind::Task)?;
+            kind::refuse_others(&self.file, Kind::Description)?;
             Document::read(&self.file)?
         };
         let checked = match Kind::of(&document)? {

@@ -19,6 +19,8 @@ pub(super) enum Kind {
     Trajectory,
     Results,
     Folder,
+    /// Any file that describes something: what `check` takes.
+    Description,
 }
 
 /// Keys that only an experiment has.
@@ -73,6 +75,7 @@ impl Kind {
             Self::Trajectory => "a trajectory",
             Self::Results => "a folder of results",
             Self::Folder => "a folder",
+            Self::Description => "a task, robot, motion or experiment file",
         }
     }
 
@@ -102,7 +105,7 @@ impl Kind {
             (Self::Results, _) => {
                 "`driftless report`, `status`, `export` and `compact` take it".to_owned()
             }
-            (Self::Folder, _) => return None,
+            (Self::Folder | Self::Description, _) => return None,
         };
         Some(help)
     }

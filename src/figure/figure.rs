@@ -69,11 +69,12 @@ impl Figure {
     /// The same with other colours of lines, points and boxes, also where they are paler or darker.
     pub(crate) fn recoloured(mut self, of: impl Fn(RGBColor) -> RGBColor) -> Self {
         let other = |colour: RGBColor| {
-            let mixed = |own: &RGBColor| {
-                let shades = SHADES.iter().find(|(to, share)| mix(*own, *to, *share) == colour);
-                shades.map(|(to, share)| mix(of(*own), *to, *share))
+            // Colours themselves before their shades: 55 % of black is the grey among them.
+            let shaded = |&(to, share): &(RGBColor, f64)| {
+                let own = COLOURS.iter().find(|own| mix(**own, to, share) == colour);
+                own.map(|own| mix(of(*own), to, share))
             };
-            COLOURS.iter().find_map(mixed).unwrap_or_else(|| of(colour))
+            SHADES.iter().find_map(shaded).unwrap_or(colour)
         };
         for mark in self.panels.iter_mut().flat_map(|panel| &mut panel.marks) {
             mark.recolour(other);

@@ -15,7 +15,7 @@ fn completions_are_printed_for_every_shell() {
         let output = folder.run(&["completions", shell]);
         assert!(output.status.success(), "{}", stderr(&output));
         assert!(stdout(&output).contains(expected), "{shell}");
-        assert!(stdout(&output).contains("best-known"), "{shell} has no help of `--entry`");
+        assert!(stdout(&output).contains("entry"), "{shell} lacks `plan --entry`");
     }
     assert_eq!(folder.run(&["completions", "cmd"]).status.code(), Some(2));
 }
@@ -64,7 +64,7 @@ fn files_of_another_kind_are_named() {
         ("plan", "results", "is a folder of results", task, "`driftless report`"),
         ("replay", "task.toml", "is a task file", "expected a motion file", "`driftless plan`"),
         ("replay", "experiment.toml", "is an experiment file", "expected a motion", "run"),
-        ("check", "motion.csv", "is a trajectory", "expected", "`driftless replay` takes it"),
+        ("check", "motion.csv", "is a trajectory", "expected a task, robot", "`driftless replay`"),
         ("check", "results", "is a folder of results", "expected", "`driftless report`"),
     ];
     if cfg!(feature = "harness") {
