@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use clap::Args;
 
-use super::kind::Kind;
+use super::kind::{Kind, read_or};
 use super::progress::Bar;
 use super::replay::TrajectoryOptions;
-use super::{CliError, read_or, start_worker_threads, watch};
+use super::{CliError, start_worker_threads, watch};
 use crate::film::{Film, FilmFormat, Size, View, write_film};
 use crate::output::{check_folder_writable, check_writable};
 use crate::reorientation::{GivenTrajectory, Motion, MotionFilm, Published, ReplayFile, Replayed};

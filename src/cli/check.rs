@@ -9,8 +9,8 @@ use clap::Args;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::kind::{self, Kind};
-use super::{CliError, say_json, shipped, warn_of};
+use super::kind::{self, Kind, shipped};
+use super::{CliError, say_json, warn_of};
 use crate::input::Document;
 use crate::reorientation::{ReplayFile, TaskFile};
 use crate::robot::{Robot, RobotFile, ShapeSource};

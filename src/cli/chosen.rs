@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::kind::Kind;
+use super::CliError;
+use super::kind::{Kind, read_or};
 use super::trust::tell_programs;
-use super::{CliError, read_or};
 use crate::experiment::{Experiment, Plan};
 use crate::registry::registry;
 

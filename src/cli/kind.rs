@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::CliError;
 use crate::input::{Document, InputError};
-use crate::reorientation::GivenTrajectory;
+use crate::reorientation::{GivenTrajectory, TaskFile};
 use crate::robot::Robot;
 
 /// What a file or folder is.
@@ -156,4 +156,28 @@ pub(super) fn refuse_file(path: &Path, expected: Kind) -> Result<(), CliError> {
         Some(found) => Err(another(path, found, expected)),
         None => Ok(()),
     }
+}
+
+/// The file named, of a kind, or a text that comes with the program.
+pub(super) fn read_or(
+    file: Option<&Path>,
+    kind: Kind,
+    embedded: impl FnOnce() -> Document,
+) -> Result<Document, CliError> {
+    file.map_or_else(|| Ok(embedded()), |file| read(file, kind))
+}
+
+/// A task: its file, the name of a robot that comes with one, or the paper's.
+pub(super) fn read_task(file: Option<&Path>) -> Result<Document, CliError> {
+    let Some(file) = file else { return Ok(TaskFile::paper()) };
+    match shipped(file) {
+        Some((robot, _)) => Ok(Document::embedded(robot, &format!("[task]\nrobot = {robot:?}\n"))),
+        None => read(file, Kind::Task),
+    }
+}
+
+/// A robot that comes with the program and its file, where a path is its name and no file's.
+pub(super) fn shipped(path: &Path) -> Option<(&str, Document)> {
+    let name = path.to_str().filter(|_| !path.is_file())?;
+    Robot::embedded(name).map(|document| (name, document))
 }

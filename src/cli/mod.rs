@@ -64,19 +64,18 @@ use std::error::Error as _;
 use std::ffi::OsString;
 use std::fmt::{self, Write as _};
 use std::io::{self, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::{Arc, LazyLock, Mutex};
 
 use clap::{Parser, Subcommand};
-use kind::Kind;
 use miette::{Diagnostic, MietteHandlerOpts, NamedSource, Report, SourceSpan};
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::input::{Document, InputError};
+use crate::input::InputError;
 use crate::output::FileError;
-use crate::reorientation::{ExportError, PlanError, TaskFile, TrajectoryError};
+use crate::reorientation::{ExportError, PlanError, TrajectoryError};
 use crate::robot::Robot;
 use crate::search::Watch;
 
@@ -453,30 +452,6 @@ fn shown_error(error: CliError) -> String {
         text += &plain(rest);
     }
     text
-}
-
-/// The file named, of a kind, or a text that comes with the program.
-fn read_or(
-    file: Option<&Path>,
-    kind: Kind,
-    embedded: impl FnOnce() -> Document,
-) -> Result<Document, CliError> {
-    file.map_or_else(|| Ok(embedded()), |file| kind::read(file, kind))
-}
-
-/// A task: its file, the name of a robot that comes with one, or the paper's.
-fn read_task(file: Option<&Path>) -> Result<Document, CliError> {
-    let Some(file) = file else { return Ok(TaskFile::paper()) };
-    match shipped(file) {
-        Some((robot, _)) => Ok(Document::embedded(robot, &format!("[task]\nrobot = {robot:?}\n"))),
-        None => kind::read(file, Kind::Task),
-    }
-}
-
-/// A robot that comes with the program and its file, where a path is its name and no file's.
-fn shipped(path: &Path) -> Option<(&str, Document)> {
-    let name = path.to_str().filter(|_| !path.is_file())?;
-    Robot::embedded(name).map(|document| (name, document))
 }
 
 /// Says once what is unphysical about a robot, unless the robot comes with the program.

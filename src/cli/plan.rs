@@ -6,9 +6,10 @@ use clap::Args;
 
 use super::family::FamilyOptions;
 use super::found::{mission_told, told};
+use super::kind::read_task;
 use super::motion::MotionFiles;
 use super::progress::Bar;
-use super::{CliError, read_task, say_json, shown, start_worker_threads, warn_of, watch};
+use super::{CliError, say_json, shown, start_worker_threads, warn_of, watch};
 use crate::input::nearest;
 use crate::optimiser::Settings;
 use crate::reorientation::{

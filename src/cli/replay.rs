@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use super::kind::Kind;
+use super::kind::{Kind, read_or, read_task};
 use super::motion::{MotionFiles, Told};
 use super::replayed::Trajectory;
-use super::{CliError, read_or, read_task, shown, start_worker_threads};
+use super::{CliError, shown, start_worker_threads};
 use crate::reorientation::{
     AngleUnit, AssessmentJson, Excursions, ExcursionsJson, GivenTrajectory, Published, Reading,
     Record, ReplayFile, Replayed, Sampling, ShapeJson, TaskFile,

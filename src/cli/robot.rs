@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::json;
 
-use super::kind::{self, Kind};
-use super::{CliError, say_json, shipped, warn_of};
+use super::kind::{self, Kind, shipped};
+use super::{CliError, say_json, warn_of};
 use crate::input::Document;
 use crate::output::write_file;
 use crate::robot::RobotFile;

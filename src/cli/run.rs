@@ -159,7 +159,9 @@ impl Run {
         let (count, evaluations) = (missing.len(), missing.iter().map(|run| run.budget).sum());
         if count < mine.len() {
             let all = plural(mine.len(), "run");
-            note!("{} of {all} are stored already", mine.len() - count);
+            let stored = mine.len() - count;
+            let are = if stored == 1 { "is" } else { "are" };
+            note!("{stored} of {all} {are} stored already");
         }
         {
             let bar = Bar::new(evaluations, watch.clone());

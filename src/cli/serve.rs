@@ -8,10 +8,11 @@ use clap::Args;
 
 use super::family::FamilyOptions;
 use super::found::told;
+use super::kind::read_task;
 use super::motion::MotionFiles;
 use super::plan::warn_of_weights;
 use super::progress::Bar;
-use super::{CliError, read_task, shown, start_worker_threads, watch};
+use super::{CliError, shown, start_worker_threads, watch};
 use crate::process::{Client, Socket, TOKEN};
 use crate::reorientation::{
     Asked, Formulated, Formulation, PlanError, Planned, Search, TaskFile, TaskProblem,

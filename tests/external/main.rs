@@ -305,7 +305,7 @@ fn an_edited_solver_is_another() {
     let run = |args: &[&str]| driftless(folder.path(), &[&["run", "zoo.toml"], args].concat());
     assert!(run(&["--out", "out"]).status.success());
     let same = run(&["--out", "out"]);
-    assert!(said(&same).contains("1 of 1 runs are stored already"), "{}", said(&same));
+    assert!(said(&same).contains("1 of 1 run is stored already"), "{}", said(&same));
     let edited = ZOO.replace("ask_all(10)", "ask_all(11)");
     fs::write(folder.path().join("zoo.py"), edited).unwrap();
     let other = run(&["--out", "out"]);

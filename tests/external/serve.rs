@@ -120,7 +120,7 @@ fn mistakes_of_a_client_are_told() {
     for (sent, told) in [
         ("", "closed its output before it was done"),
         ("{\"x\": [0]}\n", "said something before it said `hello`"),
-        ("{\"hello\": {}}\n{\"x\": [0]}\n", "sent a point with 1 variables, expected 12"),
+        ("{\"hello\": {}}\n{\"x\": [0]}\n", "sent a point with 1 variable, expected 12"),
         ("{\"hello\": {}}\n{\"done\": true}\n", "no cost was asked for"),
         ("{\"hello\": {}}\nready?\n{'x': 0}\n", "JSON has double quotes"),
     ] {
