@@ -137,7 +137,6 @@ fn prepare(page: &str, sandbox: &Sandbox) {
         }
     }
     let lines: &[&str] = match page {
-        "README.md" => &["driftless plan my-task.toml --motion planned.yaml"],
         "docs/motions.md" => &["driftless run example.toml"],
         "docs/experiments.md" => &["driftless run example.toml --out results/mine"],
         "docs/trajectories.md" => &["driftless plan my-task.toml --motion motion.csv"],

@@ -36,7 +36,7 @@ pub(super) fn told(found: &Planned) -> String {
         let _ = writeln!(text, "  this J         {}", known.compared_with(found.assessment.cost));
     }
     if let Some(other) = &found.other {
-        let _ = writeln!(text, "  in comparison  {}", other_told(other));
+        let _ = writeln!(text, "  in comparison  {}", other_told(other, task));
     }
     let Spent { evaluations, seconds, .. } = found.spent;
     let _ = write!(text, "  {} in {seconds:.2} s", plural(evaluations as usize, "evaluation"));
@@ -87,10 +87,13 @@ pub(super) fn mission_told(found: &PlannedMission) -> String {
     text
 }
 
-fn other_told(other: &OtherFamily) -> String {
+fn other_told(other: &OtherFamily, task: &Task) -> String {
     let OtherFamily { terms, t_f, residual_deg, status } = other;
     let found = match status {
         Reach::Reached => format!("{t_f:.6} s"),
+        _ if *residual_deg <= task.goal_tolerance_deg() => {
+            "none found that keeps all limits".to_owned()
+        }
         _ => format!("none found that reaches the goal ({residual_deg:.3}° off)"),
     };
     format!("sine polynomials with {}: {found}", plural(*terms, "term"))

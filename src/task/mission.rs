@@ -141,6 +141,12 @@ impl TaskTable {
                     return Err(document.error_at(span, message, None));
                 }
             };
+            if matches!(place, Place::Stay) && parts.base().is_none() && !via.changes_load() {
+                let message = format!(
+                    "{name}: found an empty stop, expected joints, `tool`, `base_zyx_deg`, `capture` or `release`"
+                );
+                return Err(document.error_at(span, message, None));
+            }
             let spin = via.angular_momentum.as_ref();
             if let (None, Some(spin)) = (&via.capture, spin) {
                 let message =

@@ -498,13 +498,20 @@ fn median_line(
     Some(pieces.map(|points| Mark::Line(Line::new(&told, stroke, points))).collect())
 }
 
+/// Intervals in which the law is drawn.
+const LAW_POINTS: f64 = 32.0;
+
 /// `t_f ∝ j̄^(−1/3)` over the motions that reach the goal, from the lowest limit on.
 fn cube_root_law(curve: &[&Point]) -> Option<Line> {
     let mut reached = curve.iter().filter(|point| !point.misses());
     let (first, last) = (reached.next()?, reached.next_back()?);
     let law = format!("{T_F} as the jerk limit to the power −1/3");
     let at = |jerk: f64| [jerk, first.duration * (jerk / first.setting).powf(-1.0 / 3.0)];
-    Some(Line::new(&law, Stroke::reference(), vec![at(first.setting), at(last.setting)]))
+    // Straight on logarithmic axes alone.
+    let jerk =
+        |i: u32| first.setting * (last.setting / first.setting).powf(f64::from(i) / LAW_POINTS);
+    let points = (0..=LAW_POINTS as u32).map(|i| at(jerk(i)));
+    Some(Line::new(&law, Stroke::reference(), points.collect()))
 }
 
 /// The label of an axis of durations.
