@@ -160,7 +160,7 @@ impl Run {
         if count < mine.len() {
             let all = plural(mine.len(), "run");
             let stored = mine.len() - count;
-            let are = if stored == 1 { "is" } else { "are" };
+            let are = if mine.len() == 1 { "is" } else { "are" };
             note!("{stored} of {all} {are} stored already");
         }
         {
