@@ -270,3 +270,14 @@ fn the_momentum_of_what_is_caught_is_added() {
         assert!(error.to_string().contains(expected), "{keys}: {error}");
     }
 }
+
+/// A path that takes no time has slopes all the same.
+#[test]
+fn a_standing_robot_has_finite_slopes() {
+    let mut task = drifting("ur5e", [0.5, 1.0, -0.3]);
+    task.goal.joints = task.start.joints.clone();
+    let problem = Formulated::free_form(Arc::new(over(task, 8, 24))).unwrap();
+    let x = vec![0.0; problem.bounds().len()];
+    let found = problem.slopes().unwrap().at(&x).unwrap();
+    assert!(found.evaluation.cost.is_finite() && found.slopes.iter().all(|s| s.is_finite()));
+}

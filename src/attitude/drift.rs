@@ -87,12 +87,12 @@ impl<const N: usize, const S: usize> Collocation<N, S> {
         impulse: Vec3<f64>,
         responses: [BaseResponse<f64>; N],
     ) -> Panel<N, S> {
-        let mut impulses = [start.inverse().matrix() * impulse; N];
-        let mut rates: [Vec3<f64>; N] = from_fn(|n| responses[n].with(impulses[n]));
+        let mut back = [start.inverse().matrix(); N];
+        let mut rates: [Vec3<f64>; N] = from_fn(|n| responses[n].with(back[n] * impulse));
         for _ in 0..REPETITIONS {
             let turns = self.turns(&rates);
-            impulses = turns.nodes.map(|node| start.then(node).inverse().matrix() * impulse);
-            let next: [Vec3<f64>; N] = from_fn(|n| responses[n].with(impulses[n]));
+            back = turns.nodes.map(|node| start.then(node).inverse().matrix());
+            let next: [Vec3<f64>; N] = from_fn(|n| responses[n].with(back[n] * impulse));
             let square = |v: Vec3<f64>| v.dot(v);
             let change = (0..N).map(|n| square(next[n] - rates[n])).fold(0.0, f64::max);
             let size = next.iter().map(|rate| square(*rate)).fold(0.0, f64::max);
@@ -101,12 +101,13 @@ impl<const N: usize, const S: usize> Collocation<N, S> {
                 break;
             }
         }
-        Panel { turns: self.turns(&rates), rates, responses, impulses }
+        let impulses = back.map(|back| back * impulse);
+        Panel { turns: self.turns(&rates), rates, responses, back, impulses }
     }
 
     /// How the end of a panel follows its start and its rates.
     pub(super) fn slopes(&self, panel: &Panel<N, S>) -> PanelSlopes<N> {
-        let Panel { rates, responses, impulses, turns } = panel;
+        let Panel { rates, responses, impulses, turns, .. } = panel;
         let by_rate = |weights: &[[f64; N]; 3]| -> [Matrix3<f64>; N] {
             let moments = step_moments(weights, rates);
             let jacobian = so3::right_jacobian(magnus(moments));
@@ -178,6 +179,8 @@ pub(super) struct Panel<const N: usize, const S: usize> {
     turns: Turns<N, S>,
     rates: [Vec3<f64>; N],
     responses: [BaseResponse<f64>; N],
+    /// Turns inertial axes into base axes at every node.
+    back: [Mat3<f64>; N],
     /// The impulse along base axes at every node.
     pub(super) impulses: [Vec3<f64>; N],
 }
@@ -188,9 +191,9 @@ impl<const N: usize, const S: usize> Panel<N, S> {
         self.turns.ends[S - 1]
     }
 
-    /// What a unit more of the impulse's size adds to the rate at a node.
-    pub(super) fn by_impulse(&self, node: usize, size: f64) -> Vec3<f64> {
-        self.responses[node].inverse * self.impulses[node] * (1.0 / size)
+    /// What another impulse, along inertial axes, adds to the rate at a node.
+    pub(super) fn answer(&self, node: usize, impulse: Vec3<f64>) -> Vec3<f64> {
+        self.responses[node].inverse * (self.back[node] * impulse)
     }
 }
 

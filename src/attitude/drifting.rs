@@ -54,13 +54,14 @@ impl<F: Family> Rollout<F> {
         let mut net = Quat::identity();
         let mut by_coefficient = Matrix3xX::zeros(family.dimension());
         let mut by_duration = Vector3::zeros();
+        let per_second = Vec3::of(&drift.momentum);
         for ((panel, PanelSlopes { by_start, by_rate }), own) in panels.iter().zip(&slopes).zip(own)
         {
             net = net.then(panel.rotation());
             by_coefficient = by_start * by_coefficient + own;
             by_duration = by_start * by_duration;
             for (n, by_rate) in by_rate.iter().enumerate() {
-                by_duration += by_rate * Vector3::from(panel.by_impulse(n, drift.duration));
+                by_duration += by_rate * Vector3::from(panel.answer(n, per_second));
             }
         }
         (RotationSlopes { rotation: net.into(), by_coefficient }, by_duration)

@@ -322,6 +322,7 @@ impl<F: Family> Reorientation<F> {
         Err(format!("found a piece on track {track}, expected one of {}", 3 * joints).into())
     }
 
+    /// With momentum that of a robot without, which is near enough to make the last steps few.
     fn base_error_curvature(&self, coefficients: &[f64], nu: &Vector3<f64>) -> DMatrix<f64> {
         let (error, by_turn) = self.turned_error(self.net_rotation(coefficients));
         let turned =

@@ -41,6 +41,9 @@ pub(super) fn closed<F: Family>(problem: &Formulated<F>, x: &[f64]) -> (Vec<f64>
 fn step<F: Family>(problem: &Formulated<F>, coefficients: &[f64]) -> Option<Vec<f64>> {
     let timing: Timing = problem.task().timing(coefficients);
     let ErrorSlopes { value, slopes } = problem.task().error_slopes(coefficients, &timing);
+    if !slopes.iter().chain(&value).all(|number| number.is_finite()) {
+        return None;
+    }
     let svd = slopes.svd(true, true);
     let least = SINGULAR * svd.singular_values.max();
     let change = svd.solve(&value, least).ok()?;

@@ -14,8 +14,8 @@ use crate::reorientation::settings::TaskProblem;
 use crate::task::Task;
 use crate::trajectory::{Family as _, Spline};
 
-/// Durations that are looked at, up to that in which the momentum turns the base round once, but no longer than so many times
-/// the motion that was found.
+/// Durations that are looked at, longer than the motion that was found by up to a turn of the base by its momentum, but by no more
+/// than so many times that motion's.
 const LOOKS: usize = 400;
 const LONGEST: f64 = 100.0;
 
@@ -100,7 +100,7 @@ fn near_passes(problem: &Reorientation<Spline>, duration: f64) -> Vec<f64> {
     let still = vec![0.0; task.robot.joint_count()];
     let response = BaseResponse::of(&task.robot, &task.start.joints, &still);
     let rate = Vector3::from(response.with(task.momentum_at(&task.start.base))).norm();
-    let longest = (TAU / rate).clamp(duration, LONGEST * duration);
+    let longest = duration + (TAU / rate).min(LONGEST * duration);
     let straight = vec![0.0; problem.family().dimension()];
     let time = |k: usize| duration + k as f64 / LOOKS as f64 * (longest - duration);
     let error = |k| problem.error_after(problem.rotation_over(&straight, time(k))).angle();
