@@ -33,7 +33,10 @@ fn parts(page: &str) -> (Vec<Part>, usize) {
             if !line.trim().is_empty() {
                 is_left_out = line.starts_with("<!-- not run: ");
                 let saved = line.split("as `").nth(1).and_then(|rest| rest.split('`').next());
-                name = saved.filter(|name| name.ends_with(".toml")).map(str::to_owned).or(name);
+                name = saved
+                    .filter(|name| Path::new(name).extension().is_some_and(|e| e == "toml"))
+                    .map(str::to_owned)
+                    .or(name);
             }
             continue;
         };
@@ -142,9 +145,9 @@ fn prepare(page: &str, sandbox: &Sandbox) {
         "docs/trajectories.md" => &["driftless plan my-task.toml --motion motion.csv"],
         _ => &[],
     };
-    lines.iter().for_each(|line| {
+    for line in lines {
         sandbox.run(line);
-    });
+    }
 }
 
 /// Runs the commands of a page; gives how many those are, and how many are left out.
