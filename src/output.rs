@@ -57,6 +57,22 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     Ok(())
 }
 
+/// Has a program write to a temporary file in the same folder, whose name has the given ending; then does as [`write_file`].
+#[cfg(feature = "film")]
+pub(crate) fn write_file_by<E: From<FileError>>(
+    path: &Path,
+    ending: &str,
+    write: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<(), E> {
+    let error = |source| FileError { action: "write", path: path.to_owned(), source };
+    remove_temporary(folder_of(path));
+    let mut builder = readable_by_all(0o666);
+    let file = builder.suffix(ending).tempfile_in(folder_of(path)).map_err(error)?.into_temp_path();
+    write(&file)?;
+    fs::File::options().append(true).open(&file).and_then(|file| file.sync_all()).map_err(error)?;
+    Ok(file.persist(path).map_err(|e| error(e.error))?)
+}
+
 /// Makes a folder and those above it.
 pub(crate) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|source| FileError {

@@ -27,7 +27,7 @@ fn a_gif_of_the_published_motion() {
     for name in ["a.gif", "b.gif"] {
         let output = run(folder.path(), &[&["animate", "--out", name], &small[..]].concat());
         assert!(output.status.success(), "{}", said(&output));
-        assert!(String::from_utf8_lossy(&output.stdout).contains("64 pictures"));
+        assert!(String::from_utf8_lossy(&output.stdout).contains("64 frames, 7.40 s"));
     }
     let [bytes, again] = ["a.gif", "b.gif"].map(|name| fs::read(folder.path().join(name)).unwrap());
     assert!(bytes == again, "two films of one motion differ");
@@ -80,7 +80,7 @@ fn what_is_wrong_is_told() {
         (&["--out", "film.gif", "task.toml"], "is a task file, expected a motion file"),
         (&["--out", "film.gif", "--task", "task.toml"], "found --task, which is for a trajectory"),
         (&["--out", "film.gif", "--task", "task.toml", "bad.csv"], "bad.csv"),
-        (&["--out", "film.gif", "long.toml"], "pictures of a motion of 10000000.000 s"),
+        (&["--out", "film.gif", "long.toml"], "frames of a motion of 10000000.000 s"),
         (&["--out", "film.gif", "gone.toml"], "cannot read gone.toml"),
     ] {
         let output = run(folder.path(), &[&["animate"], args].concat());
@@ -127,6 +127,12 @@ fn videos_are_for_ffmpeg() {
     assert!(output.status.success(), "{}", said(&output));
     let bytes = fs::read_to_string(folder.path().join("film.webm")).unwrap();
     assert_eq!(bytes.trim(), (14 * 64 * 64 * 3).to_string());
+    // One that ends before it has all pictures has not written a film, whatever it says.
+    ffmpeg("exec <&-; sleep 1; exit 0");
+    let output = animate("short.mp4").output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said(&output).contains("ended before it had all pictures"), "{}", said(&output));
+    assert!(!folder.path().join("short.mp4").exists());
     ffmpeg("echo no such codec >&2; exit 1");
     let output = animate("film.mp4").output().unwrap();
     assert_eq!(output.status.code(), Some(1));

@@ -140,8 +140,18 @@ fn prepare(page: &str, sandbox: &Sandbox) {
         }
     }
     let lines: &[&str] = match page {
-        "docs/motions.md" => &["driftless run example.toml"],
+        "docs/animate.md" | "docs/gallery.md" | "docs/motions.md" => {
+            &["driftless run example.toml"]
+        }
+        "docs/cluster.md" => &["cp example.toml experiment.toml"],
         "docs/experiments.md" => &["driftless run example.toml --out results/mine"],
+        "docs/import.md" => &[
+            "driftless run example.toml --out results/ours",
+            "driftless export results/ours --format ioh --out ioh-data",
+            "driftless export results/ours --format coco --out exdata",
+            "printf 'problem,optimiser,seed,evaluation,cost\\np,o,1,1,2.5\\np,o,1,7,0.5\\n' > runs.csv",
+        ],
+        "docs/robots.md" => &["driftless robot convert panda --out panda.urdf"],
         "docs/trajectories.md" => &["driftless plan my-task.toml --motion motion.csv"],
         _ => &[],
     };

@@ -3,20 +3,19 @@
 //! With `h = Rᵀ L` the base's rate is `ω = ω_0(θ, θ') + t_f I(θ)⁻¹ h`: it follows the attitude `R`, so steps can no longer be
 //! taken apart from each other. Every panel is a collocation: at its nodes the rate is that of the attitude to which Magnus
 //! steps over the interpolated rates lead from the panel's start. What takes long, the sweeps, does not follow the attitude
-//! and is done once per node; what does is found by repetition, which contracts by about the angle that the momentum turns
-//! the base by within a panel.
+//! and is done once per node; the rest is a fixed-point iteration, which contracts by about the angle by which the momentum turns
+//! the base within a panel.
 
 use std::array::from_fn;
 
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 
-use super::magnus::{GAUSS, magnus, magnus_slopes};
-use super::rollout::{step_moments, step_weights};
+use super::magnus::{GAUSS, magnus, magnus_slopes, step_moments, step_weights};
 use crate::momentum::BaseResponse;
 use crate::so3::{self, Quat};
 use crate::vec3::{Mat3, Vec3};
 
-/// What turns the base beside the joints.
+/// What turns the base besides the joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drift {
     /// Total angular momentum about the system's centre of mass, inertial axes \[N·m·s\].
@@ -28,17 +27,19 @@ pub struct Drift {
 }
 
 impl Drift {
-    /// What normalised time makes of the momentum: the duration times it.
-    pub(super) fn impulse(&self) -> Vec3<f64> {
+    /// The momentum in normalised time: `t_f L`.
+    pub(super) fn scaled_momentum(&self) -> Vec3<f64> {
         Vec3::of(&(self.momentum * self.duration))
     }
 }
 
-/// Rates of a panel are found when they change by no more than this share.
+/// Iterations end when the rates of a panel change by no more than this share, and have not converged where the last one changed
+/// them by more than the other.
 const SAME: f64 = 1e-14;
+const CONVERGED: f64 = 1e-9;
 
-/// Most repetitions. A panel in which the momentum turns the base by more than a radian may need more.
-const REPETITIONS: usize = 60;
+/// Most iterations. Where the momentum turns the base by more than about a radian within a panel, they do not converge.
+const ITERATIONS: usize = 60;
 
 /// Of panels with `N` nodes and `S` Magnus steps, what the rates at the nodes add to the moments of each step, and of the part
 /// of one that ends at a node.
@@ -80,34 +81,39 @@ impl<const N: usize, const S: usize> Collocation<N, S> {
         Turns { ends, nodes }
     }
 
-    /// A panel that starts at this attitude, with an impulse along inertial axes.
+    /// A panel that starts at this attitude, with a scaled momentum along inertial axes. Its rates are NaN where they do not converge.
     pub(super) fn panel(
         &self,
         start: Quat<f64>,
-        impulse: Vec3<f64>,
+        scaled_momentum: Vec3<f64>,
         responses: [BaseResponse<f64>; N],
     ) -> Panel<N, S> {
         let mut back = [start.inverse().matrix(); N];
-        let mut rates: [Vec3<f64>; N] = from_fn(|n| responses[n].with(back[n] * impulse));
-        for _ in 0..REPETITIONS {
+        let mut rates: [Vec3<f64>; N] = from_fn(|n| responses[n].with(back[n] * scaled_momentum));
+        let mut has_converged = true;
+        for _ in 0..ITERATIONS {
             let turns = self.turns(&rates);
             back = turns.nodes.map(|node| start.then(node).inverse().matrix());
-            let next: [Vec3<f64>; N] = from_fn(|n| responses[n].with(back[n] * impulse));
+            let next: [Vec3<f64>; N] = from_fn(|n| responses[n].with(back[n] * scaled_momentum));
             let square = |v: Vec3<f64>| v.dot(v);
             let change = (0..N).map(|n| square(next[n] - rates[n])).fold(0.0, f64::max);
             let size = next.iter().map(|rate| square(*rate)).fold(0.0, f64::max);
             rates = next;
+            has_converged = change <= CONVERGED * CONVERGED * size;
             if change <= SAME * SAME * size {
                 break;
             }
         }
-        let impulses = back.map(|back| back * impulse);
-        Panel { turns: self.turns(&rates), rates, responses, back, impulses }
+        if !has_converged {
+            rates = [Vec3::new(f64::NAN, f64::NAN, f64::NAN); N];
+        }
+        let scaled_momenta = back.map(|back| back * scaled_momentum);
+        Panel { turns: self.turns(&rates), rates, responses, back, scaled_momenta }
     }
 
     /// How the end of a panel follows its start and its rates.
     pub(super) fn slopes(&self, panel: &Panel<N, S>) -> PanelSlopes<N> {
-        let Panel { rates, responses, impulses, turns, .. } = panel;
+        let Panel { rates, responses, scaled_momenta, turns, .. } = panel;
         let by_rate = |weights: &[[f64; N]; 3]| -> [Matrix3<f64>; N] {
             let moments = step_moments(weights, rates);
             let jacobian = so3::right_jacobian(magnus(moments));
@@ -123,10 +129,10 @@ impl<const N: usize, const S: usize> Collocation<N, S> {
             let back = place.transpose();
             (0..steps).map(|k| back * ends[k] * of_steps[k][n]).sum()
         };
-        // What turns a node changes its impulse, and that its rate.
+        // A turn of a node changes the momentum along its axes, and that its rate.
         let by_turn: [Matrix3<f64>; N] = from_fn(|n| {
-            let cross = Mat3::cross(impulses[n]);
-            Matrix3::from(Mat3(cross.0.map(|column| responses[n].inverse * column)))
+            let cross = Mat3::cross(scaled_momenta[n]);
+            Matrix3::from(Mat3(cross.0.map(|column| responses[n].inverse_inertia * column)))
         });
         let mut own = vec![[Matrix3::zeros(); N]; N];
         for (n, row) in own.iter_mut().enumerate() {
@@ -144,7 +150,7 @@ impl<const N: usize, const S: usize> Collocation<N, S> {
 }
 
 /// Most unknowns of a panel: three of each of six nodes.
-const MOST: usize = 18;
+const MOST_UNKNOWNS: usize = 18;
 
 /// `X (1 − B K) = E` by blocks of three, `B` on the diagonal.
 fn solve<const N: usize>(
@@ -152,8 +158,8 @@ fn solve<const N: usize>(
     by_turn: &[Matrix3<f64>; N],
     own: &[[Matrix3<f64>; N]],
 ) -> [Matrix3<f64>; N] {
-    let mut matrix = SMatrix::<f64, MOST, MOST>::identity();
-    let mut right = SMatrix::<f64, MOST, 3>::zeros();
+    let mut matrix = SMatrix::<f64, MOST_UNKNOWNS, MOST_UNKNOWNS>::identity();
+    let mut right = SMatrix::<f64, MOST_UNKNOWNS, 3>::zeros();
     for n in 0..N {
         for (m, own) in own[n].iter().enumerate() {
             let block = (by_turn[n] * own).transpose();
@@ -181,8 +187,8 @@ pub(super) struct Panel<const N: usize, const S: usize> {
     responses: [BaseResponse<f64>; N],
     /// Turns inertial axes into base axes at every node.
     back: [Mat3<f64>; N],
-    /// The impulse along base axes at every node.
-    pub(super) impulses: [Vec3<f64>; N],
+    /// The scaled momentum along base axes at every node.
+    pub(super) scaled_momenta: [Vec3<f64>; N],
 }
 
 impl<const N: usize, const S: usize> Panel<N, S> {
@@ -191,9 +197,9 @@ impl<const N: usize, const S: usize> Panel<N, S> {
         self.turns.ends[S - 1]
     }
 
-    /// What another impulse, along inertial axes, adds to the rate at a node.
-    pub(super) fn answer(&self, node: usize, impulse: Vec3<f64>) -> Vec3<f64> {
-        self.responses[node].inverse * (self.back[node] * impulse)
+    /// What more scaled momentum, along inertial axes, adds to the rate at a node.
+    pub(super) fn answer(&self, node: usize, scaled_momentum: Vec3<f64>) -> Vec3<f64> {
+        self.responses[node].inverse_inertia * (self.back[node] * scaled_momentum)
     }
 }
 

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Matrix3xX, Vector3};
 
-use super::drift::{Collocation, Drift, Panel, PanelSlopes};
+use super::drift::{Drift, Panel, PanelSlopes};
 use super::node::{Evaluator, Node};
-use super::rollout::{NODES, Rollout, STEPS, nodes};
+use super::rollout::{NODES, Rollout, STEPS};
 use super::slopes::RotationSlopes;
 use crate::lanes::{LaneWork, Lanes, MOST, Width};
 use crate::momentum::BaseResponse;
@@ -33,7 +33,7 @@ impl<F: Family> Rollout<F> {
         drift: Drift,
     ) -> nalgebra::UnitQuaternion<f64> {
         let path = Drifting { rollout: self, robot, family, coefficients, drift };
-        let (panels, _) = path.follow(width.run(Responses(&path)));
+        let panels = path.follow(width.run(Responses(&path)));
         let net = panels.iter().fold(Quat::identity(), |net, panel| net.then(panel.rotation()));
         net.into()
     }
@@ -48,8 +48,8 @@ impl<F: Family> Rollout<F> {
         drift: Drift,
     ) -> (RotationSlopes, Vector3<f64>) {
         let path = Drifting { rollout: self, robot, family, coefficients, drift };
-        let (panels, collocation) = path.follow(width.run(Responses(&path)));
-        let slopes: Vec<_> = panels.iter().map(|panel| collocation.slopes(panel)).collect();
+        let panels = path.follow(width.run(Responses(&path)));
+        let slopes: Vec<_> = panels.iter().map(|panel| self.collocation.slopes(panel)).collect();
         let own = width.run(Additions { path: &path, panels: &panels, slopes: &slopes });
         let mut net = Quat::identity();
         let mut by_coefficient = Matrix3xX::zeros(family.dimension());
@@ -68,20 +68,17 @@ impl<F: Family> Rollout<F> {
     }
 }
 
-type Followed = (Vec<Panel<NODES, STEPS>>, Collocation<NODES, STEPS>);
-
 impl<F: Family> Drifting<'_, F> {
     /// All panels, one after the other.
-    fn follow(&self, responses: Vec<[BaseResponse<f64>; NODES]>) -> Followed {
-        let collocation = Collocation::new(&nodes(), 1.0 / self.rollout.panels as f64);
+    fn follow(&self, responses: Vec<[BaseResponse<f64>; NODES]>) -> Vec<Panel<NODES, STEPS>> {
+        let collocation = &self.rollout.collocation;
         let mut attitude = Quat::from(self.drift.start);
-        let panels = responses.into_iter().map(|responses| {
-            let panel = collocation.panel(attitude, self.drift.impulse(), responses);
+        let follow = |responses| {
+            let panel = collocation.panel(attitude, self.drift.scaled_momentum(), responses);
             attitude = attitude.then(panel.rotation());
             panel
-        });
-        let panels = panels.collect();
-        (panels, collocation)
+        };
+        responses.into_iter().map(follow).collect()
     }
 }
 
@@ -96,18 +93,19 @@ impl<F: Family> LaneWork for Responses<'_, F> {
         let Drifting { rollout, robot, family, coefficients, .. } = self.0;
         let mut evaluator = Evaluator::<T, F>::new(robot, *family);
         let mut phases = Vec::with_capacity(family.joints());
-        let none = BaseResponse { rate: Vec3::zero(), inverse: Sym3::zero() };
+        let none = BaseResponse { rate: Vec3::zero(), inverse_inertia: Sym3::zero() };
         let mut responses = vec![[none; NODES]; rollout.panels];
         for first in (0..rollout.panels).step_by(T::COUNT) {
             for n in 0..NODES {
                 let place = Rollout::<F>::place(first, n);
                 evaluator.phases(&rollout.nodes, place, coefficients, &mut phases);
-                let BaseResponse { rate, inverse } = evaluator.response(&phases);
+                let BaseResponse { rate, inverse_inertia } = evaluator.response(&phases);
                 let rates = rate.lanes();
-                let (diagonals, besides) = (inverse.diagonal.lanes(), inverse.beside.lanes());
+                let (diagonals, besides) =
+                    (inverse_inertia.diagonal.lanes(), inverse_inertia.beside.lanes());
                 for (lane, panel) in responses[first..].iter_mut().take(T::COUNT).enumerate() {
-                    let inverse = Sym3 { diagonal: diagonals[lane], beside: besides[lane] };
-                    panel[n] = BaseResponse { rate: rates[lane], inverse };
+                    let inverse_inertia = Sym3 { diagonal: diagonals[lane], beside: besides[lane] };
+                    panel[n] = BaseResponse { rate: rates[lane], inverse_inertia };
                 }
             }
         }
@@ -138,8 +136,9 @@ impl<F: Family> LaneWork for Additions<'_, F> {
             for n in 0..NODES {
                 let place = Rollout::<F>::place(first, n);
                 evaluator.phases(&rollout.nodes, place, coefficients, &mut phases);
-                let impulse = gather(count, |lane| self.panels[first + lane].impulses[n]);
-                evaluator.evaluate_drifting(&phases, impulse, &mut node);
+                let scaled_momentum =
+                    gather(count, |lane| self.panels[first + lane].scaled_momenta[n]);
+                evaluator.evaluate_drifting(&phases, scaled_momentum, &mut node);
                 let turn = gather_matrix(count, |lane| self.slopes[first + lane].by_rate[n]);
                 rollout.add_turns(*family, &node, place, turn, &mut sums);
             }

@@ -19,6 +19,40 @@ where
     [w2, (w3 - w1) * (SQRT_15 / 3.0), (w3 - w2 * 2.0 + w1) * (10.0 / 3.0)]
 }
 
+/// What the rate at each node adds to the moments of a step of this width that has its Gauss nodes at these places.
+pub(super) fn step_weights<const N: usize>(
+    nodes: &[f64; N],
+    gauss: [f64; 3],
+    width: f64,
+) -> [[f64; N]; 3] {
+    let mut moments = [[0.0; N]; 3];
+    for n in 0..N {
+        let at = |place: f64| -> f64 {
+            let others = (0..N).filter(|&m| m != n);
+            others.map(|m| (place - nodes[m]) / (nodes[n] - nodes[m])).product()
+        };
+        for (moment, own) in moments.iter_mut().zip(gauss_moments(gauss.map(|p| width * at(p)))) {
+            moment[n] = own;
+        }
+    }
+    moments
+}
+
+/// The moments of one step.
+#[inline(always)]
+pub(super) fn step_moments<T: Scalar, const N: usize>(
+    step: &[[f64; N]; 3],
+    rates: &[Vec3<T>; N],
+) -> [Vec3<T>; 3] {
+    let mut moments = [Vec3::zero(); 3];
+    for (moment, weights) in moments.iter_mut().zip(step) {
+        for n in 0..N {
+            *moment = rates[n].mul_add(T::of(weights[n]), *moment);
+        }
+    }
+    moments
+}
+
 /// The rotation vector of a step, to sixth order, from its moments: `a₁ + a₂ t + a₃ t²`, `t` from −½ to ½
 /// over the step, is the rate times the step's width (Blanes, Casas, Oteo and Ros 2009,
 /// doi:10.1016/j.physrep.2008.11.001, section 5.4, with the signs of an equation that multiplies from

@@ -40,19 +40,19 @@ pub fn increments<'a>(
     let mut angles = vec![0.0; robot.joint_count()];
     let mut rates = angles.clone();
     let mut drift = drift.map(|drift| {
-        (Collocation::<3, 1>::new(&GAUSS, width), Quat::from(drift.start), drift.impulse())
+        (Collocation::<3, 1>::new(&GAUSS, width), Quat::from(drift.start), drift.scaled_momentum())
     });
     (0..steps).map(move |i| {
         let mut at = |node: f64| {
             write((i as f64 + node) * width, &mut angles, &mut rates);
             BaseResponse::of(robot, &angles, &rates)
         };
-        let Some((collocation, attitude, impulse)) = &mut drift else {
+        let Some((collocation, attitude, scaled_momentum)) = &mut drift else {
             let rates = GAUSS.map(|node| at(node).rate * width);
             return so3::exp(magnus(gauss_moments(rates))).into();
         };
         let responses = GAUSS.map(at);
-        let step = collocation.panel(*attitude, *impulse, responses).rotation();
+        let step = collocation.panel(*attitude, *scaled_momentum, responses).rotation();
         *attitude = attitude.then(step);
         step.into()
     })

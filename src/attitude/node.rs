@@ -78,16 +78,16 @@ impl<'a, T: Lanes, F: Family> Evaluator<'a, T, F> {
         self.evaluate_drifting(phases, Vec3::zero(), node);
     }
 
-    /// The same with an impulse along base axes, whatever turns these.
+    /// The same with a scaled momentum along base axes, whatever turns these.
     #[inline(always)]
     pub(super) fn evaluate_drifting(
         &mut self,
         phases: &[[T; 2]],
-        impulse: Vec3<T>,
+        scaled_momentum: Vec3<T>,
         node: &mut Node<T>,
     ) {
         self.move_to(phases);
-        self.slopes.evaluate_drifting(self.robot, &self.angles, &self.rates, impulse);
+        self.slopes.evaluate_drifting(self.robot, &self.angles, &self.rates, scaled_momentum);
         node.rate = self.slopes.angular;
         for (joint, at) in self.joints.iter().enumerate() {
             let (by_angle, by_rate) = (self.slopes.by_position[joint], self.slopes.by_rate[joint]);
@@ -98,7 +98,7 @@ impl<'a, T: Lanes, F: Family> Evaluator<'a, T, F> {
         }
     }
 
-    /// How the base answers every impulse where joints have these phases.
+    /// How the base responds to any angular momentum where joints have these phases.
     #[inline(always)]
     pub(super) fn response(&mut self, phases: &[[T; 2]]) -> BaseResponse<T> {
         self.move_to(phases);

@@ -4,10 +4,10 @@ use std::array::from_fn;
 
 use nalgebra::UnitQuaternion;
 
-use super::magnus::{GAUSS, gauss_moments, magnus};
+use super::drift::Collocation;
+use super::magnus::{GAUSS, magnus, step_moments, step_weights};
 use crate::lanes::{Lanes, MOST};
 use crate::momentum::{Arm, JointState};
-use crate::scalar::Scalar;
 use crate::so3::{self, Quat};
 use crate::trajectory::Family;
 use crate::vec3::Vec3;
@@ -37,6 +37,8 @@ pub struct Rollout<F: Family> {
     pub(super) nodes: F::Nodes,
     /// `moments[s][k][n]`: what the rate at node `n` adds to the moment `a_k` of step `s`.
     pub(super) moments: [[[f64; NODES]; 3]; STEPS],
+    /// The same for robots that have momentum.
+    pub(super) collocation: Collocation<NODES, STEPS>,
 }
 
 impl<F: Family> Rollout<F> {
@@ -56,7 +58,12 @@ impl<F: Family> Rollout<F> {
             })
         });
         let width = 1.0 / (panels * STEPS) as f64;
-        Self { panels, nodes: family.nodes(times), moments: moments(&places, width) }
+        Self {
+            panels,
+            nodes: family.nodes(times),
+            moments: moments(&places, width),
+            collocation: Collocation::new(&places, 1.0 / panels as f64),
+        }
     }
 
     /// One panel, over the part of the paths between two times.
@@ -69,7 +76,12 @@ impl<F: Family> Rollout<F> {
             lanes
         });
         let width = (to - from) / STEPS as f64;
-        Self { panels: 1, nodes: family.nodes(times), moments: moments(&places, width) }
+        Self {
+            panels: 1,
+            nodes: family.nodes(times),
+            moments: moments(&places, width),
+            collocation: Collocation::new(&places, to - from),
+        }
     }
 
     /// Magnus steps that it makes.
@@ -233,40 +245,6 @@ fn moments(nodes: &[f64; NODES], width: f64) -> [[[f64; NODES]; 3]; STEPS] {
     from_fn(|step| {
         step_weights(nodes, GAUSS.map(|gauss| (step as f64 + gauss) / STEPS as f64), width)
     })
-}
-
-/// What the rate at each node adds to the moments of a step of this width that has its Gauss nodes at these places.
-pub(super) fn step_weights<const N: usize>(
-    nodes: &[f64; N],
-    gauss: [f64; 3],
-    width: f64,
-) -> [[f64; N]; 3] {
-    let mut moments = [[0.0; N]; 3];
-    for n in 0..N {
-        let at = |place: f64| -> f64 {
-            let others = (0..N).filter(|&m| m != n);
-            others.map(|m| (place - nodes[m]) / (nodes[n] - nodes[m])).product()
-        };
-        for (moment, own) in moments.iter_mut().zip(gauss_moments(gauss.map(|p| width * at(p)))) {
-            moment[n] = own;
-        }
-    }
-    moments
-}
-
-/// The moments of one step.
-#[inline(always)]
-pub(super) fn step_moments<T: Scalar, const N: usize>(
-    step: &[[f64; N]; 3],
-    rates: &[Vec3<T>; N],
-) -> [Vec3<T>; 3] {
-    let mut moments = [Vec3::zero(); 3];
-    for (moment, weights) in moments.iter_mut().zip(step) {
-        for n in 0..N {
-            *moment = rates[n].mul_add(T::of(weights[n]), *moment);
-        }
-    }
-    moments
 }
 
 /// The product of all, by pairs.

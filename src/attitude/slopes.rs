@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3xX, UnitQuaternion, Vector3};
 
-use super::magnus::{magnus, magnus_slopes};
+use super::magnus::{magnus, magnus_slopes, step_moments};
 use super::node::{Evaluator, Node};
-use super::rollout::{NODES, Rollout, STEPS, step_moments};
+use super::rollout::{NODES, Rollout, STEPS};
 use crate::lanes::{LaneWork, Lanes, MOST, Width};
 use crate::robot::Robot;
 use crate::so3::{self, Quat};

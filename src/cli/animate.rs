@@ -7,18 +7,20 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use clap::Args;
+use serde_json::json;
 
 use super::kind::{Kind, read_or};
 use super::progress::Bar;
 use super::replay::TrajectoryOptions;
-use super::{CliError, start_worker_threads, watch};
+use super::{CliError, say_json, start_worker_threads, watch};
 use crate::film::{Film, FilmFormat, Size, View, write_film};
 use crate::output::{check_folder_writable, check_writable};
 use crate::reorientation::{GivenTrajectory, Motion, MotionFilm, Published, ReplayFile, Replayed};
 use crate::task::Task;
+use crate::words::plural;
 
-/// Most pictures of a film.
-const MOST_PICTURES: f64 = 100_000.0;
+/// Most frames of a film.
+const MOST_FRAMES: f64 = 100_000.0;
 
 /// Intervals of a motion that is drawn, at least.
 const LEAST_INTERVALS: usize = 200;
@@ -36,13 +38,13 @@ pub(super) struct Animate {
     #[arg(long, value_name = "LABEL")]
     instance: Option<String>,
     /// File to write: .gif, .apng or .png (animated), .mp4 or .webm (where ffmpeg is installed); or a folder, for a PNG of each
-    /// picture
+    /// frame
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Width and height [pixels]
     #[arg(long, value_name = "SIZE", default_value_t = Size::FULL_HD)]
     size: Size,
-    /// Pictures per second
+    /// Frames per second
     #[arg(long, value_name = "N", default_value_t = 30.0, allow_negative_numbers = true, value_parser = fps)]
     fps: f64,
     /// Seconds of the motion in a second of the film
@@ -52,10 +54,13 @@ pub(super) struct Animate {
     #[arg(
         long,
         value_name = "AZIMUTH,ELEVATION",
-        default_value = "-58,25",
+        default_value_t = View::default(),
         allow_hyphen_values = true
     )]
     view: View,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
 }
 
 fn fps(text: &str) -> Result<f64, String> {
@@ -113,7 +118,7 @@ impl Animate {
         if self.fps > most {
             let fps = self.fps;
             return Err(usage(format!(
-                "--fps: found {fps}, and viewers show at most {most} pictures of a GIF per second"
+                "--fps: found {fps}, and viewers show at most {most} frames of a GIF per second"
             )));
         }
         format.check()?;
@@ -124,7 +129,7 @@ impl Animate {
         Ok(format)
     }
 
-    /// Finds fault with an instance of what is no folder of results.
+    /// Refuses an instance of what is not a folder of results.
     fn check_instance(&self) -> Result<(), CliError> {
         if self.instance.is_some() {
             let message = "found --instance, which is for a folder of results".to_owned();
@@ -171,34 +176,45 @@ impl Animate {
         format: FilmFormat,
         sample: impl FnOnce(usize) -> Motion,
     ) -> Result<(), CliError> {
-        let pictures = duration / self.speed * self.fps;
-        if pictures > MOST_PICTURES {
+        let frames = duration / self.speed * self.fps;
+        if frames > MOST_FRAMES {
             let message = format!(
-                "found {pictures:.0} pictures of a motion of {duration:.3} s, expected {MOST_PICTURES} or fewer"
+                "found {frames:.0} frames of a motion of {duration:.3} s, expected {MOST_FRAMES} or fewer"
             );
             let help = Some("a larger --speed or a smaller --fps takes fewer".to_owned());
             return Err(CliError::Usage { message, help });
         }
-        let intervals = pictures.round().max(1.0) as usize;
-        // Few pictures still show a smooth way of the tool.
+        let intervals = frames.round().max(1.0) as usize;
+        // Few frames still show a smooth path of the tool.
         let finer = LEAST_INTERVALS.div_ceil(intervals);
         let motion = sample(intervals * finer);
         let film = Film { size: self.size, count: intervals + 1, per_second: self.fps };
         let drawn = MotionFilm::new(task, &motion, self.view, self.size);
         let watch = watch();
         let done = Arc::new(AtomicU64::new(0));
-        let go_on = || {
-            done.fetch_add(1, Ordering::Relaxed);
-            !watch.is_interrupted()
-        };
         {
-            let done = done.clone();
-            let count = move || done.load(Ordering::Relaxed);
-            let _bar = Bar::counting(film.count as u64, "pictures", count);
-            write_film(&self.out, format, film, &|i| drawn.picture(i * finer), &go_on)?;
+            let count = done.clone();
+            let _bar =
+                Bar::counting(film.count as u64, "frames", move || count.load(Ordering::Relaxed));
+            let draw = |i| drawn.picture(i * finer);
+            let (go_on, count) = (
+                || !watch.is_interrupted(),
+                || {
+                    done.fetch_add(1, Ordering::Relaxed);
+                },
+            );
+            write_film(&self.out, format, film, &draw, &go_on, &count)?;
         }
-        let seconds = film.count as f64 / self.fps;
-        say!("{}: {} pictures, {seconds:.2} s", self.out.display(), film.count);
+        let (file, seconds) = (self.out.display(), film.seconds(format));
+        if self.json {
+            return say_json(&json!({
+                "file": file.to_string(),
+                "frames": film.count,
+                "duration_s": seconds,
+                "motion_duration_s": duration,
+            }));
+        }
+        say!("{file}: {}, {seconds:.2} s", plural(film.count, "frame"));
         Ok(())
     }
 }

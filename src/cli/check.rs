@@ -86,11 +86,15 @@ impl Check {
             Some(Kind::Motion) => {
                 let file = ReplayFile::read(&document)?;
                 warn_of(&file.build(&document)?.problem.task().robot);
-                Checked::new("motion to replay", &file)?
+                Checked::new("motion", &file)?
             }
             Some(Kind::Experiment) => check_experiment(&document, !self.no_estimate)?,
             _ => check_task(&document)?,
         };
+        if self.no_estimate && checked.kind != "experiment" {
+            let message = "found --no-estimate, which is for experiments".to_owned();
+            return Err(CliError::Usage { message, help: None });
+        }
         if self.json { say_json(&checked.json(&self.file)?) } else { checked.say() }
     }
 }
@@ -132,8 +136,19 @@ fn check_task(document: &Document) -> Result<Checked, CliError> {
     };
     let robot = &problem.task().robot;
     warn_of(robot);
-    let checked = Checked::new("task", &file.resolved(&problem))?;
-    Ok(checked.with("robot", robot.name()).with("joints", robot.joint_count()))
+    let mut checked = Checked::new("task", &file.resolved(&problem))?;
+    let tool = problem.task().tool_at_start();
+    let position = tool.translation.vector;
+    let (roll, pitch, yaw) = tool.rotation.euler_angles();
+    let zyx_deg = [yaw, pitch, roll].map(f64::to_degrees);
+    checked.remarks.push(format!(
+        "the tool starts at position_m = [{:.4}, {:.4}, {:.4}], zyx_deg = [{:.3}, {:.3}, {:.3}] in inertial axes",
+        position.x, position.y, position.z, zyx_deg[0], zyx_deg[1], zyx_deg[2]
+    ));
+    Ok(checked
+        .with("robot", robot.name())
+        .with("joints", robot.joint_count())
+        .with("tool_at_start", json!({ "position_m": position.as_slice(), "zyx_deg": zyx_deg })))
 }
 
 #[cfg(feature = "harness")]

@@ -6,7 +6,7 @@ use serde_json::json;
 use super::results::ResultsFolder;
 use super::warnings::warn_of_damage;
 use super::{CliError, say_json, watch};
-use crate::exhibit::words::plural;
+use crate::words::plural;
 
 /// Merge many small result files into a few; other processes may run and read meanwhile
 #[derive(Debug, Args)]

@@ -9,10 +9,10 @@ use super::results::{ResultsFolder, no_results};
 use super::sampling::SamplingOptions;
 use super::warnings::warn_of_damage;
 use super::{CliError, say_json};
-use crate::exhibit::words::plural;
 use crate::experiment::{Plan, Run, load, standing};
 use crate::export::{Suite, SuiteFormat, write_suite};
 use crate::reorientation::{MotionFormat, TaskSubject, write_motions};
+use crate::words::plural;
 
 /// Export the runs of an experiment for other benchmarking tools, or its best motions
 #[derive(Debug, Args)]

@@ -5,12 +5,11 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::kind::{self, Kind};
 use super::results::start_all_threads;
 use super::{CliError, say_json};
-use crate::exhibit::words::plural;
 use crate::experiment::{DataFormat, Folder};
 use crate::import::read;
+use crate::words::plural;
 
 /// Import runs of other programs as a folder of results, to be reported beside others
 #[derive(Debug, Args)]
@@ -42,7 +41,12 @@ enum Format {
 impl Import {
     pub(super) fn execute(self) -> Result<(), CliError> {
         if self.data.join("experiment.toml").is_file() {
-            kind::refuse_others(&self.data, Kind::Folder)?;
+            let message = format!(
+                "{} is a folder of results, expected data of another program",
+                self.data.display()
+            );
+            let help = Some("`driftless export` writes such data from results".to_owned());
+            return Err(CliError::Usage { message, help });
         }
         start_all_threads()?;
         let format = match self.format {

@@ -18,6 +18,7 @@ pub(super) enum Kind {
     /// A motion of another program, or one written by `--motion`.
     Trajectory,
     Results,
+    /// A folder that no experiment has made.
     Folder,
     /// Any file that describes something: what `check` takes.
     Description,
@@ -81,10 +82,10 @@ impl Kind {
 
     /// Which verbs take it, and what is missing for the one that was asked for.
     fn help(self, expected: Self, path: &Path) -> Option<String> {
-        let robot = path.display();
+        let path = path.display();
         let help = match (self, expected) {
             (Self::Robot, Self::Task) => format!(
-                "a task names it: `[task]` with `robot = \"{robot}\"`, a start, a goal and limits"
+                "a task names it: `[task]` with `robot = \"{path}\"`, a start, a goal and limits"
             ),
             (Self::Robot, _) => {
                 "`driftless check` and `driftless robot convert` take it".to_owned()
@@ -97,13 +98,13 @@ impl Kind {
                 "`driftless plan` takes it; a motion file also has a table `[motion]`".to_owned()
             }
             (Self::Task, _) => "`driftless plan` takes it".to_owned(),
-            (Self::Motion, _) => "`driftless replay` takes it".to_owned(),
+            (Self::Motion, _) => "`driftless replay` and `animate` take it".to_owned(),
             (Self::Trajectory, _) => {
-                "`driftless replay` takes it, and checks it against the task of `--task`".to_owned()
+                "`driftless replay` and `animate` take it, with the task of `--task`".to_owned()
             }
-            (Self::Experiment, _) => "`driftless run` takes it".to_owned(),
+            (Self::Experiment, _) => "`driftless run`, `submit` and `check` take it".to_owned(),
             (Self::Results, _) => {
-                "`driftless report`, `status`, `export` and `compact` take it".to_owned()
+                "`driftless report`, `status`, `export`, `compact` and `animate` take it".to_owned()
             }
             (Self::Folder | Self::Description, _) => return None,
         };

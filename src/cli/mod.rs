@@ -317,7 +317,7 @@ impl From<crate::film::FilmError> for CliError {
         use crate::film::FilmError;
         match error {
             FilmError::File(error) => Self::File(error),
-            FilmError::Interrupted => Self::Interrupted(error.to_string()),
+            FilmError::Interrupted => Self::Interrupted("no film was written".to_owned()),
             FilmError::NoFfmpeg { .. } => Self::Usage {
                 message: error.to_string(),
                 help: Some(

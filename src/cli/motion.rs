@@ -38,7 +38,7 @@ pub(super) struct MotionFiles {
 }
 
 impl MotionFiles {
-    /// Finds fault with the files' names and folders before any work is done.
+    /// Checks the files' names and folders before any work is done.
     pub(super) fn check(&self) -> Result<(), CliError> {
         match self.format()? {
             Some((path, MotionFormat::Mujoco)) => {
@@ -58,7 +58,21 @@ impl MotionFiles {
         Ok(())
     }
 
-    /// Finds fault with the joints asked for before any work is done.
+    /// Refuses a format that cannot have a load that changes on the way, before any work is done.
+    pub(super) fn check_changing_load(&self) -> Result<(), CliError> {
+        match self.format()? {
+            Some((path, format)) if !format.takes_changing_load() => Err(CliError::Usage {
+                message: format!(
+                    "cannot write {}: the robot's load changes on the way, and a MuJoCo model has one load",
+                    path.display()
+                ),
+                help: None,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks the joints asked for before any work is done.
     pub(super) fn check_joints(&self, robot: &Robot) -> Result<(), CliError> {
         let names: Vec<&str> = robot.joints().map(|joint| joint.name).collect();
         match self.joints.iter().find(|asked| !names.iter().any(|name| is_meant(asked, name))) {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::family::FamilyOptions;
 use super::found::{mission_told, told};
@@ -10,7 +11,6 @@ use super::kind::read_task;
 use super::motion::MotionFiles;
 use super::progress::Bar;
 use super::{CliError, say_json, shown, start_worker_threads, warn_of, watch};
-use crate::input::nearest;
 use crate::optimiser::Settings;
 use crate::reorientation::{
     Accuracy, Asked, BestKnown, FamilySpec, LegMotion, Planned, Planner, Reach,
@@ -23,10 +23,10 @@ pub(super) struct Plan {
     /// Task file, or the name of a shipped robot, which has its own task [default: the paper's task]
     #[arg(value_name = "TASK")]
     file: Option<PathBuf>,
-    /// Optimiser, with its default settings; see `driftless list`. Optimisers other than `scp` search sine polynomials, which
+    /// Optimiser, with its default settings. Optimisers other than `scp` search sine polynomials, which
     /// have few variables, unless --family or the file says otherwise
-    #[arg(long, value_name = "NAME", default_value = "scp")]
-    optimiser: String,
+    #[arg(long, value_name = "NAME", default_value = "scp", value_parser = optimisers())]
+    optimiser: Settings,
     #[command(flatten)]
     family: FamilyOptions,
     /// Seed of the random numbers
@@ -59,11 +59,13 @@ impl Plan {
     pub(super) fn execute(self) -> Result<(), CliError> {
         start_worker_threads()?;
         self.files.check()?;
-        let optimiser = find_optimiser(&self.optimiser)?;
         let document = read_task(self.file.as_deref())?;
-        let planner = Planner::read(&document, self.family.choice(), optimiser)?;
+        let planner = Planner::read(&document, self.family.choice(), self.optimiser.clone())?;
         warn_of(&planner.task().robot);
         self.files.check_joints(&planner.task().robot)?;
+        if planner.changes_load() {
+            self.files.check_changing_load()?;
+        }
         if planner.is_mission() {
             return self.plan_mission(&planner);
         }
@@ -99,7 +101,12 @@ impl Plan {
             let json = found.json(&self.asked(task));
             say_json(&json)?;
         } else {
-            say!("{} by {}, seed {}", shown(self.file.as_ref(), ""), self.optimiser, self.seed);
+            say!(
+                "{} by {}, seed {}",
+                shown(self.file.as_ref(), ""),
+                self.optimiser.name(),
+                self.seed
+            );
             if let Some(inheritance) = task.inheritance() {
                 say!("  not stated     {inheritance}");
             }
@@ -132,7 +139,7 @@ impl Plan {
         Asked {
             task: shown(self.file.as_ref(), "xiao2023"),
             inherited: task.inherited(),
-            optimiser: &self.optimiser,
+            optimiser: self.optimiser.name(),
             seed: self.seed,
         }
     }
@@ -170,7 +177,7 @@ impl Plan {
             say_json(&json)?;
         } else {
             let file = shown(self.file.as_ref(), "the paper's task");
-            say!("{file} by {}, seed {}", self.optimiser, self.seed);
+            say!("{file} by {}, seed {}", self.optimiser.name(), self.seed);
             if let Some(inheritance) = task.inheritance().filter(|_| self.file.is_some()) {
                 say!("  not stated     {inheritance}");
             }
@@ -211,7 +218,9 @@ impl Plan {
             let found_by = format!(
                 "driftless plan --optimiser {} --seed {} --budget {}{family}, attitude_steps = \
                  {attitude_steps}, peak_intervals = {peak_intervals}",
-                self.optimiser, self.seed, self.budget
+                self.optimiser.name(),
+                self.seed,
+                self.budget
             );
             let (coefficients, assessment) = (&found.coefficients, &found.assessment);
             // A goal of the tool has several configurations, and the motion ends in one of them.
@@ -222,13 +231,9 @@ impl Plan {
     }
 }
 
-fn find_optimiser(name: &str) -> Result<Settings, CliError> {
-    Settings::by_name(name).ok_or_else(|| {
-        let all = Settings::all();
-        let known: Vec<&str> = all.iter().map(Settings::name).collect();
-        CliError::Usage {
-            message: format!("no optimiser `{name}`, expected one of {}", known.join(", ")),
-            help: nearest(name, known).map(|n| format!("did you mean `{n}`?")),
-        }
-    })
+/// Reads the name of an optimiser.
+fn optimisers() -> impl TypedValueParser<Value = Settings> {
+    let names: Vec<&str> = Settings::all().iter().map(Settings::name).collect();
+    PossibleValuesParser::new(names)
+        .try_map(|name| Settings::by_name(&name).ok_or("expected the name of an optimiser"))
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::kind::{Kind, read_or, read_task};
 use super::motion::{MotionFiles, Told};
 use super::replayed::Trajectory;
-use super::{CliError, shown, start_worker_threads};
+use super::{CliError, say_json, shown, start_worker_threads};
 use crate::reorientation::{
     AngleUnit, AssessmentJson, Excursions, ExcursionsJson, GivenTrajectory, Published, Reading,
     Record, ReplayFile, Replayed, Sampling, ShapeJson, TaskFile,
@@ -43,7 +43,7 @@ pub(super) struct TrajectoryOptions {
 }
 
 impl TrajectoryOptions {
-    /// Finds fault with options that have no effect on what is not a trajectory.
+    /// Refuses options that have no effect on what is not a trajectory.
     pub(super) fn check_unused(&self) -> Result<(), CliError> {
         for (option, is_given) in [("task", self.task.is_some()), ("unit", self.unit.is_some())] {
             if is_given {
@@ -60,17 +60,31 @@ impl TrajectoryOptions {
     pub(super) fn read(&self, file: &Path) -> Result<(Task, GivenTrajectory), CliError> {
         let document = read_task(self.task.as_deref())?;
         let table = TaskFile::read(&document)?.task;
-        if table.is_mission() && table.mission(&document)?.changes_load() {
-            let message = "the robot's load changes on the way, expected one that stays the same";
-            return Err(document.error_at(0..0, message, None).into());
+        if table.is_mission()
+            && let Some(span) = table.mission(&document)?.load_change()
+        {
+            let message = "found a load that changes on the way, expected a task with the same load throughout";
+            return Err(document.error_at(span, message, None).into());
         }
         let robot = table.robot(&document)?;
         let unit = self.unit.map(|unit| match unit {
             Unit::Rad => AngleUnit::Rad,
             Unit::Deg => AngleUnit::Deg,
         });
-        let trajectory = GivenTrajectory::read(file, &robot, unit)?;
-        let table = if table.moves() { table.lasting(trajectory.points.duration()) } else { table };
+        let trajectory = GivenTrajectory::read(file, &robot, unit);
+        let trajectory = trajectory.map_err(|error| match error.into() {
+            CliError::Usage { message, .. } if self.task.is_none() => {
+                let help =
+                    "it was read as a motion of the paper's robot; --task names another task";
+                CliError::Usage { message, help: Some(help.to_owned()) }
+            }
+            error => error,
+        })?;
+        let table = if table.moves() {
+            table.with_least_duration(trajectory.points.duration())
+        } else {
+            table
+        };
         Ok((table.build_ends(&document)?, trajectory))
     }
 }
@@ -121,7 +135,7 @@ impl Replay {
         let excursions = Excursions::on_the_way(&**problem, coefficients, *duration);
         let task = problem.task();
         if self.json {
-            say!("{}", json(&published, &excursions));
+            say_json(&json(&published, &excursions))?;
         } else {
             say!("{}", shown(self.file.as_ref(), "the solution published by Xiao et al. (2023)"));
             if let Some(claim) = published.cost {
@@ -143,7 +157,7 @@ impl Replay {
         let task_name = shown(self.reading.task.as_ref(), "the paper's task");
         let told = Trajectory { file, task: &task_name, replayed: &replayed };
         if self.json {
-            say!("{}", told.json(&trajectory.ignored));
+            told.say_json(&trajectory.ignored)?;
         } else {
             say!("{told}");
         }
@@ -163,7 +177,7 @@ impl Replay {
     }
 }
 
-fn json(published: &Published, excursions: &Excursions) -> String {
+fn json(published: &Published, excursions: &Excursions) -> ReplayJson {
     let Published { problem, coefficients, duration, cost } = published;
     let peaks = problem.certify(coefficients, Some(*duration)).peaks;
     let excursions = ExcursionsJson::new(excursions, problem.task(), &peaks);
@@ -172,7 +186,7 @@ fn json(published: &Published, excursions: &Excursions) -> String {
         let assessment = AssessmentJson::new(&assessment, &problem.task().robot);
         ReadingJson { reading, assessment }
     });
-    let json = ReplayJson {
+    ReplayJson {
         published: PublishedJson {
             shape: ShapeJson::new(&**problem, coefficients, *duration),
             t_f: *duration,
@@ -180,6 +194,5 @@ fn json(published: &Published, excursions: &Excursions) -> String {
             excursions,
         },
         readings: readings.collect(),
-    };
-    serde_json::to_string_pretty(&json).unwrap_or_default()
+    }
 }

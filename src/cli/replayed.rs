@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::motion::residual;
+use super::{CliError, say_json};
 use crate::reorientation::{PointReading, ReadPath, Replayed, ReplayedJson};
 use crate::words::plural;
 
@@ -39,7 +40,7 @@ impl PointReading {
 }
 
 impl Trajectory<'_> {
-    pub(super) fn json(&self, ignored: &[String]) -> String {
+    pub(super) fn say_json(&self, ignored: &[String]) -> Result<(), CliError> {
         #[derive(Serialize)]
         struct Named<'a> {
             trajectory: String,
@@ -49,9 +50,8 @@ impl Trajectory<'_> {
         }
 
         let replayed = ReplayedJson::new(self.replayed, ignored);
-        let named =
-            Named { trajectory: self.file.display().to_string(), task: self.task, replayed };
-        serde_json::to_string_pretty(&named).unwrap_or_default()
+        let trajectory = self.file.display().to_string();
+        say_json(&Named { trajectory, task: self.task, replayed })
     }
 }
 
@@ -86,7 +86,7 @@ impl fmt::Display for Trajectory<'_> {
             rate.tau * duration
         )?;
         let [linear, angular] = replayed.momentum;
-        let expected = if replayed.task().momentum.is_some() {
+        let expected = if replayed.task().angular_momentum.is_some() {
             "beside the task's own"
         } else {
             "expected zero"

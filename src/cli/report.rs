@@ -11,9 +11,9 @@ use super::results::ResultsFolders;
 use super::warnings::{warn_of_budgets, warn_of_damage};
 use super::{CliError, say_json};
 use crate::exhibit::Finding;
-use crate::exhibit::words::plural;
 use crate::experiment::{Folder, Plan, Store, standing};
 use crate::report::{ChartOptions, PALETTES, Target, palette, write_all};
+use crate::words::plural;
 
 /// Write tables, figures and an HTML page from stored results
 #[derive(Debug, Args)]
@@ -42,8 +42,8 @@ struct ChartArguments {
     /// Draw linear axes instead of logarithmic ones; `--linear=x` or `--linear=y` only horizontal or vertical ones
     #[arg(long, value_name = "AXES", num_args = 0..=1, require_equals = true, default_missing_value = "both")]
     linear: Option<LinearAxes>,
-    /// Colours of lines and markers: the name of a palette (okabe-ito, tol-bright, grey), a list such as `#0072B2,#D55E00`,
-    /// or a file with one such colour on each line
+    /// Colours of the optimisers, in the order of the experiment's file, and of other lines: the name of a palette (okabe-ito,
+    /// tol-bright, grey), a list such as `#0072B2,#D55E00`, or a file with one such colour per line
     #[arg(long, value_name = "COLOURS", value_parser = colours)]
     colours: Option<Colours>,
 }
@@ -68,26 +68,32 @@ fn colours(text: &str) -> Result<Colours, String> {
     if let Some(palette) = palette(text) {
         return Ok(Colours(palette));
     }
-    let from_file;
-    let list: Vec<&str> = if text.contains('#') {
-        text.split(',').map(str::trim).collect()
-    } else {
-        from_file = std::fs::read_to_string(text).map_err(|error| {
-            let palettes = PALETTES.map(|(name, _)| name).join(", ");
-            format!("expected {palettes}, colours such as #0072B2, or a file with these: {error}")
-        })?;
-        from_file.lines().map(str::trim).filter(|line| !line.is_empty()).collect()
-    };
-    let colour = |text: &&str| {
-        let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
-        let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
-        let [_, red, green, blue] = number
-            .ok_or_else(|| format!("found `{text}`, expected a colour such as #0072B2"))?
-            .to_be_bytes();
-        Ok([red, green, blue])
-    };
-    let colours = list.iter().map(colour).collect::<Result<Vec<_>, String>>()?;
-    if colours.is_empty() { Err("found no colour".to_owned()) } else { Ok(Colours(colours)) }
+    if text.starts_with('#') {
+        let colours = text.split(',').map(|text| colour(text.trim()));
+        return Ok(Colours(colours.collect::<Result<_, _>>()?));
+    }
+    let file = std::fs::read_to_string(text).map_err(|error| {
+        let palettes = PALETTES.map(|(name, _)| name).join(", ");
+        format!("expected {palettes}, colours such as #0072B2, or a file with these: {error}")
+    })?;
+    let lines = file.trim_start_matches('\u{FEFF}').lines().map(str::trim);
+    let lines = (1..).zip(lines).filter(|(_, line)| !line.is_empty());
+    let colours = lines.map(|(number, line)| {
+        colour(line).map_err(|error| format!("{text}, line {number}: {error}"))
+    });
+    let colours: Vec<[u8; 3]> = colours.collect::<Result<_, _>>()?;
+    if colours.is_empty() { Err(format!("{text}: found no colour")) } else { Ok(Colours(colours)) }
+}
+
+/// Reads a colour such as `#0072B2`.
+fn colour(text: &str) -> Result<[u8; 3], String> {
+    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
+    let digits = digits.filter(|digits| digits.bytes().all(|digit| digit.is_ascii_hexdigit()));
+    let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+    let [_, red, green, blue] = number
+        .ok_or_else(|| format!("found `{text}`, expected a colour such as #0072B2"))?
+        .to_be_bytes();
+    Ok([red, green, blue])
 }
 
 impl ChartArguments {
@@ -175,6 +181,7 @@ pub(super) fn report(
     for store in stores {
         warn_of_damage(store);
     }
+    warn_of_budgets(plan);
     if json {
         say_json(&report_json(plan, &report))?;
     } else {
@@ -216,7 +223,7 @@ fn report_json(plan: &Plan, report: &crate::report::Report) -> Value {
         "stored": report.stored,
         "failed": report.failed,
         "page": report.page.display().to_string(),
-        "is_replaced": report.kept.is_none(),
+        "is_written": report.kept.is_none(),
         "tables": shown(&report.tables),
         "figures": shown(&report.figures),
         "lines": report.lines,
@@ -231,7 +238,6 @@ fn tell(plan: &Plan, report: &crate::report::Report) -> Result<(), CliError> {
         say!("{} of {planned} are stored so far", report.stored);
     }
     say!("{}", report.summary);
-    warn_of_budgets(plan);
     for line in &report.lines {
         say!("{line}");
     }

@@ -50,7 +50,10 @@ fn expect_results(path: &Path) -> Result<(), CliError> {
         return Ok(());
     }
     refuse_file(path, Kind::Results)?;
-    Err(no_results(path, "a file"))
+    Err(CliError::Usage {
+        message: format!("{} is a file, expected a folder of results", path.display()),
+        help: Some(HELP.to_owned()),
+    })
 }
 
 /// Starts the threads that work on results is shared out to, those of polars among them.

@@ -23,7 +23,7 @@ impl SamplingOptions {
         self.dt.or(self.rate)
     }
 
-    /// Finds fault with options that have no effect, since no motion is written; `expected` says what would write one.
+    /// Refuses options that have no effect, since no motion is written; `expected` says what would write one.
     pub(super) fn check_unused(&self, expected: &str) -> Result<(), CliError> {
         let option = if self.dt.is_some() { "--dt" } else { "--rate" };
         match self.choice() {

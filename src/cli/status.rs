@@ -4,12 +4,12 @@ use clap::Args;
 use polars::prelude::*;
 use serde::Serialize;
 
-use super::CliError;
 use super::results::{ResultsFolder, command};
 use super::warnings::warn_of_damage;
+use super::{CliError, say_json};
 use crate::analysis::render;
-use crate::exhibit::words::plural;
 use crate::experiment::{Damage, FailedRun, Folder, Standing, Tally, standing};
+use crate::words::plural;
 
 /// Show which runs of an experiment are done, failed or missing
 #[derive(Debug, Args)]
@@ -99,8 +99,7 @@ impl Status {
         let standing = standing(&results.plan, &results.store)?;
         let batches = results.store.batch_count()?;
         if self.json {
-            say!("{}", serde_json::json!(json(&results, &standing, batches)));
-            return Ok(());
+            return say_json(&json(&results, &standing, batches));
         }
         tell(&results, &standing, batches)
     }

@@ -11,10 +11,10 @@ use super::chosen::Chosen;
 use super::run::default_jobs;
 use super::warnings::warn_of_budgets;
 use super::{CliError, say_json, start_worker_threads};
-use crate::exhibit::words::plural;
 use crate::experiment::{Folder, FolderError, Plan, estimate};
 use crate::process::is_on_path;
 use crate::registry::registry;
+use crate::words::plural;
 
 /// Workers that are reckoned with where nobody says how many there are.
 pub(super) const WORKERS: usize = 8;

@@ -1,7 +1,7 @@
 //! What is worth a warning before work begins.
 
-use crate::exhibit::words::plural;
 use crate::experiment::{Plan, Store};
+use crate::words::plural;
 
 /// Says what is doubtful about an experiment's subjects, once each.
 pub(super) fn warn_of_subjects(plan: &Plan) {

@@ -1,7 +1,5 @@
 //! Numbers and lists as one reads them.
 
-pub(crate) use crate::words::plural;
-
 /// A cost or a time, to four digits.
 pub(crate) fn number(value: f64) -> String {
     significant(value, 4)

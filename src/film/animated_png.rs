@@ -33,8 +33,16 @@ impl<'a> PngFile<'a> {
     }
 
     /// Goes on with pictures, each of which stays for some milliseconds.
-    pub(super) fn push(&mut self, pictures: Vec<Picture>, delays: &[u16]) -> Result<(), FilmError> {
+    pub(super) fn push(
+        &mut self,
+        pictures: Vec<Picture>,
+        delays: &[u16],
+        go_on: &dyn Fn() -> bool,
+    ) -> Result<(), FilmError> {
         for (picture, delay) in pictures.into_iter().zip(delays) {
+            if !go_on() {
+                return Err(FilmError::Interrupted);
+            }
             self.add(&picture, *delay).map_err(|e| error(&e))?;
             self.before = Some(picture);
         }

@@ -1,5 +1,6 @@
 //! Where a film is seen from.
 
+use std::fmt;
 use std::str::FromStr;
 
 use nalgebra::Vector3;
@@ -26,6 +27,12 @@ pub struct View {
 impl Default for View {
     fn default() -> Self {
         Self { azimuth: -58.0, elevation: 25.0 }
+    }
+}
+
+impl fmt::Display for View {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.azimuth, self.elevation)
     }
 }
 
@@ -85,7 +92,7 @@ impl Camera {
             focal: FOCAL * height.min(width),
             middle: [width / 2.0, height * TOP + half[1]],
         };
-        let span = |values: &mut dyn Iterator<Item = f64>| {
+        let middle_of = |values: &mut dyn Iterator<Item = f64>| {
             let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
                 [low.min(value), high.max(value)]
             });
@@ -96,12 +103,13 @@ impl Camera {
         }
         let axes = [camera.right, camera.up, camera.towards];
         camera.target =
-            axes.iter().map(|axis| axis * span(&mut places.iter().map(|p| axis.dot(p)))).sum();
+            axes.iter().map(|axis| axis * middle_of(&mut places.iter().map(|p| axis.dot(p)))).sum();
         // What is nearer looks larger, so the middle of the places is not that of their picture.
         for _ in 0..8 {
             camera.distance = camera.fitting_distance(places, half);
             let seen: Vec<[f64; 3]> = places.iter().map(|place| camera.project(place)).collect();
-            let shift = [0, 1].map(|k| span(&mut seen.iter().map(|at| at[k])) - camera.middle[k]);
+            let shift =
+                [0, 1].map(|k| middle_of(&mut seen.iter().map(|at| at[k])) - camera.middle[k]);
             let scale = camera.distance / camera.focal;
             camera.target += camera.right * shift[0] * scale - camera.up * shift[1] * scale;
         }

@@ -4,6 +4,7 @@ use crate::output::FileError;
 
 /// Why a film was not written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FilmError {
     /// A file could not be written.
     #[error(transparent)]
@@ -28,6 +29,6 @@ pub enum FilmError {
     #[error("ffmpeg failed: {0}")]
     Ffmpeg(String),
     /// Somebody wanted it to end.
-    #[error("no film was written")]
+    #[error("interrupted before the film was written")]
     Interrupted,
 }

@@ -20,7 +20,7 @@ pub enum FilmFormat {
 impl FilmFormat {
     /// What names end in.
     pub const ENDINGS: &str =
-        ".gif, .apng, .png, .mp4 or .webm, or the name of a folder for a PNG of each picture";
+        ".gif, .apng, .png, .mp4 or .webm, or the name of a folder for a PNG of each frame";
 
     /// The format that a name asks for: a folder where it ends in `/` or has no ending.
     pub fn of(path: &Path) -> Option<Self> {
@@ -37,7 +37,7 @@ impl FilmFormat {
         }
     }
 
-    /// Most pictures per second: viewers show pictures of a GIF that stay for less than 0.02 s much longer.
+    /// Highest frame rate \[Hz\]: viewers show frames of a GIF that stay for less than 0.02 s much longer.
     pub fn most_per_second(self) -> f64 {
         if self == Self::Gif { 50.0 } else { 240.0 }
     }

@@ -7,17 +7,23 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
     /// Across.
-    pub width: usize,
+    pub(crate) width: usize,
     /// Down.
-    pub height: usize,
+    pub(crate) height: usize,
 }
 
 impl Size {
     /// 1080p.
     pub const FULL_HD: Self = Self { width: 1920, height: 1080 };
 
-    /// The smallest and largest width and height that [`from_str`](Self::from_str) reads.
+    /// The smallest and largest width and height.
     const RANGE: std::ops::RangeInclusive<usize> = 64..=7680;
+
+    /// Of this width and height, where both are from 64 to 7680.
+    pub fn new(width: usize, height: usize) -> Option<Self> {
+        let is_in_range = [width, height].iter().all(|length| Self::RANGE.contains(length));
+        is_in_range.then_some(Self { width, height })
+    }
 }
 
 impl fmt::Display for Size {
@@ -32,16 +38,11 @@ impl FromStr for Size {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let lengths = text.split_once(['x', '×']);
-        let lengths = lengths.and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-        match lengths {
-            Some([width, height]) if [width, height].iter().all(|l| Self::RANGE.contains(l)) => {
-                Ok(Self { width, height })
-            }
-            _ => {
-                let (least, most) = (Self::RANGE.start(), Self::RANGE.end());
-                Err(format!("expected a width and a height of {least} to {most} pixels: 1920x1080"))
-            }
-        }
+        let size = lengths.and_then(|(w, h)| Self::new(w.parse().ok()?, h.parse().ok()?));
+        size.ok_or_else(|| {
+            let (least, most) = (Self::RANGE.start(), Self::RANGE.end());
+            format!("expected a width and a height of {least} to {most} pixels: 1920x1080")
+        })
     }
 }
 

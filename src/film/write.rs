@@ -11,7 +11,7 @@ use super::format::FilmFormat;
 use super::gif::GifFile;
 use super::picture::{Picture, Size};
 use super::stills;
-use crate::output::{write_file, write_folder};
+use crate::output::{write_file, write_file_by, write_folder};
 
 /// Pictures that a palette is made from.
 const SAMPLES: usize = 12;
@@ -19,8 +19,9 @@ const SAMPLES: usize = 12;
 /// How much longer the last picture stays where a film begins again by itself \[s\].
 const HOLD: f64 = 1.0;
 
-/// Pictures that are there at a time, for each worker thread.
+/// Pictures that are there at a time, for each worker thread, as long as they take no more than so many bytes.
 const AT_A_TIME: usize = 2;
+const MOST_BYTES: usize = 1 << 29;
 
 /// What a film is made of.
 #[derive(Debug, Clone, Copy)]
@@ -33,17 +34,18 @@ pub struct Film {
     pub per_second: f64,
 }
 
-/// Writes a film, whole or not at all. `draw` makes the picture of an index; `go_on` is told after every picture that one is done, and
-/// says whether to go on.
+/// Writes a film, whole or not at all. `draw` makes the picture of an index, `go_on` says after each picture whether to go on, and
+/// `done` is called when one of the film's pictures is drawn.
 pub fn write_film(
     path: &Path,
     format: FilmFormat,
     film: Film,
     draw: &(dyn Fn(usize) -> Picture + Sync),
     go_on: &(dyn Fn() -> bool + Sync),
+    done: &(dyn Fn() + Sync),
 ) -> Result<(), FilmError> {
     let Film { size, count, per_second } = film;
-    let film = Drawn { film, draw, go_on };
+    let film = Drawn { film, draw, go_on, done };
     match format {
         FilmFormat::Gif => {
             let mut file = GifFile::new(size, &film.samples()?)?;
@@ -55,7 +57,7 @@ pub fn write_film(
             let mut bytes = Vec::new();
             let mut file = PngFile::new(&mut bytes, size, count)?;
             let delays = film.delays(1000.0);
-            film.each(|first, pictures| file.push(pictures, &delays[first..]))?;
+            film.each(|first, pictures| file.push(pictures, &delays[first..], go_on))?;
             file.finish()?;
             Ok(write_file(path, &bytes)?)
         }
@@ -63,23 +65,28 @@ pub fn write_film(
             film.each(|first, pictures| stills::write(folder, &pictures, first + 1, count))
         }),
         FilmFormat::Mp4 | FilmFormat::WebM => {
-            let mut video = Video::new(size, per_second, format.video().unwrap_or(".mp4"))?;
-            let mut takes_more = true;
-            let drawn = film.each(|_, pictures| {
-                takes_more = takes_more && video.push(&pictures);
-                if takes_more { Ok(()) } else { Err(FilmError::Ffmpeg(String::new())) }
-            });
-            if drawn.is_err() && takes_more {
-                video.give_up();
-                return drawn;
-            }
-            video.finish(path)
+            let ending = format.video().unwrap_or(".mp4");
+            write_file_by(path, ending, |file| {
+                let mut video = Video::new(file, size, per_second, ending)?;
+                match film.each(|_, pictures| video.push(&pictures)) {
+                    Ok(()) => video.finish(&go_on),
+                    Err(error) => Err(video.give_up(error)),
+                }
+            })
         }
     }
 }
 
+impl Film {
+    /// How long it takes to show once \[s\].
+    pub fn seconds(&self, format: FilmFormat) -> f64 {
+        let hold = if matches!(format, FilmFormat::Gif | FilmFormat::Png) { HOLD } else { 0.0 };
+        self.count as f64 / self.per_second + hold
+    }
+}
+
 impl FilmFormat {
-    /// Finds fault with a missing program before any work is done.
+    /// Looks for the program that it takes before any work is done.
     pub fn check(self) -> Result<(), FilmError> {
         self.video().map_or(Ok(()), ffmpeg::check)
     }
@@ -90,6 +97,7 @@ struct Drawn<'a> {
     film: Film,
     draw: &'a (dyn Fn(usize) -> Picture + Sync),
     go_on: &'a (dyn Fn() -> bool + Sync),
+    done: &'a (dyn Fn() + Sync),
 }
 
 impl Drawn<'_> {
@@ -98,22 +106,26 @@ impl Drawn<'_> {
         &self,
         mut take: impl FnMut(usize, Vec<Picture>) -> Result<(), FilmError>,
     ) -> Result<(), FilmError> {
-        let step = AT_A_TIME * rayon::current_num_threads();
+        let Size { width, height } = self.film.size;
+        let affordable = MOST_BYTES / (3 * width * height).max(1);
+        let step = (AT_A_TIME * rayon::current_num_threads()).min(affordable).max(1);
         for first in (0..self.film.count).step_by(step) {
             let all: Vec<usize> = (first..self.film.count.min(first + step)).collect();
-            take(first, self.drawn(&all, self.go_on)?)?;
+            take(first, self.drawn(&all, self.done)?)?;
         }
         Ok(())
     }
 
-    fn drawn(
-        &self,
-        places: &[usize],
-        go_on: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Vec<Picture>, FilmError> {
+    fn drawn(&self, places: &[usize], done: &(dyn Fn() + Sync)) -> Result<Vec<Picture>, FilmError> {
         let picture = |place: &usize| {
             let picture = (self.draw)(*place);
-            if go_on() { Ok(picture) } else { Err(FilmError::Interrupted) }
+            if picture.size != self.film.size {
+                let (found, expected) = (picture.size, self.film.size);
+                let reason = format!("found a picture of {found} pixels, expected {expected}");
+                return Err(FilmError::Encode { format: "the film", reason });
+            }
+            done();
+            if (self.go_on)() { Ok(picture) } else { Err(FilmError::Interrupted) }
         };
         places.par_iter().map(picture).collect()
     }
@@ -124,7 +136,7 @@ impl Drawn<'_> {
         let last = self.film.count.saturating_sub(1);
         let places: Vec<usize> =
             (0..count).map(|k| k * last / count.saturating_sub(1).max(1)).collect();
-        self.drawn(&places, &|| true)
+        self.drawn(&places, &|| ())
     }
 
     /// How long each picture stays, in whole parts of a second: the end of each is where it should be, to half a part.
@@ -162,7 +174,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         let format = FilmFormat::of(&path).unwrap();
-        write_film(&path, format, film(count), &dot, &|| true).unwrap();
+        write_film(&path, format, film(count), &dot, &|| true, &|| ()).unwrap();
         fs::read(path).unwrap()
     }
 
@@ -214,7 +226,7 @@ mod tests {
     fn a_folder_has_a_picture_each() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("frames");
-        write_film(&path, FilmFormat::Stills, film(12), &dot, &|| true).unwrap();
+        write_film(&path, FilmFormat::Stills, film(12), &dot, &|| true, &|| ()).unwrap();
         let mut names: Vec<_> =
             fs::read_dir(&path).unwrap().map(|e| e.unwrap().file_name()).collect();
         names.sort();
@@ -233,7 +245,7 @@ mod tests {
             let told = AtomicUsize::new(0);
             let go_on = || told.fetch_add(1, Ordering::Relaxed) < 8;
             let format = FilmFormat::of(&path).unwrap();
-            let outcome = write_film(&path, format, film(20), &dot, &go_on);
+            let outcome = write_film(&path, format, film(20), &dot, &go_on, &|| ());
             assert!(matches!(outcome, Err(FilmError::Interrupted)), "{outcome:?}");
             assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         }

@@ -49,14 +49,14 @@ pub fn drifting_twist<T: Scalar>(
     balance.twist(&momentum.less(angular_momentum))
 }
 
-/// The base's angular velocity `ω = rate + inverse · h` along base axes for every angular momentum `h` along these
+/// The base's angular velocity `ω = rate + I⁻¹ h` along base axes for every angular momentum `h` along these
 /// axes.
 #[derive(Debug, Clone, Copy)]
 pub struct BaseResponse<T> {
     /// With zero total momentum \[rad/s\].
     pub rate: Vec3<T>,
     /// Inverse of the whole system's inertia about its centre of mass \[1/(kg·m²)\].
-    pub inverse: Sym3<T>,
+    pub inverse_inertia: Sym3<T>,
 }
 
 impl<T: Scalar> BaseResponse<T> {
@@ -64,13 +64,13 @@ impl<T: Scalar> BaseResponse<T> {
     #[inline(always)]
     pub fn of(robot: &Robot, positions: &[T], rates: &[T]) -> Self {
         let (balance, momentum) = swept(robot, positions, rates);
-        Self { rate: balance.angular(&momentum), inverse: balance.inverse }
+        Self { rate: balance.angular(&momentum), inverse_inertia: balance.inverse }
     }
 
     /// `ω` with an angular momentum along base axes.
     #[inline(always)]
     pub fn with(&self, angular_momentum: Vec3<T>) -> Vec3<T> {
-        self.rate + self.inverse * angular_momentum
+        self.rate + self.inverse_inertia * angular_momentum
     }
 }
 

@@ -10,10 +10,10 @@ use super::{
     convergence, critical_difference, dimensions, effect_sizes, final_costs, running_times,
 };
 use crate::analysis::ALPHA;
-use crate::exhibit::words::plural;
 use crate::exhibit::{Chart, Finding, Table};
 use crate::experiment::{Plan, Run};
 use crate::figure::{Figure, FigureError};
+use crate::words::plural;
 
 /// The names that every experiment's charts may have.
 pub(crate) const NAMES: [&str; 9] = [
@@ -57,14 +57,15 @@ pub(crate) fn left_out(plan: &Plan, runs: &[Run]) -> Option<Finding> {
 
 /// Every chart that the tables of an experiment with so many stored runs give. Those of more than 24
 /// groups of instances are left out.
-/// `leading` are a subject's own, which come first.
+/// `leading` are a subject's own, which come first; `colours` are those of the optimisers in the plan's order, by kind if empty.
 pub(crate) fn charts(
     plan: &Plan,
     tables: &[Table],
     stored: usize,
     leading: Vec<Chart>,
+    colours: &[[u8; 3]],
 ) -> Result<Vec<Chart>, FigureError> {
-    let looks = Looks::of_plan(plan);
+    let looks = Looks::of_plan(plan, colours);
     let own = notes(plan, stored);
     let noted = |chart: Chart| Chart { caption: format!("{}{own}", chart.caption), ..chart };
     let charts = leading.into_iter().map(noted).collect();

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use plotters::style::RGBColor;
+
 use super::names::names;
 use crate::experiment::{Entrant, Plan};
 use crate::figure::style::{COLOURS, DASHES, INK, Marker, OUTSIDE_COLOURS, PAPER, Stroke, mix};
@@ -52,7 +54,7 @@ fn outsiders(field: &[Entrant]) -> Vec<&str> {
 }
 
 /// A kind's place among the markers, and its colour.
-fn kind_of(kind: &str, outsiders: &[&str]) -> (usize, plotters::style::RGBColor) {
+fn kind_of(kind: &str, outsiders: &[&str]) -> (usize, RGBColor) {
     if let Some(place) = KINDS.iter().position(|name| *name == kind) {
         return (place, COLOURS[place]);
     }
@@ -64,34 +66,39 @@ impl Looks {
     /// The looks of a field.
     #[cfg(test)]
     pub(super) fn of(field: &[Entrant]) -> Self {
-        Self::with_spaces(field, &[])
+        Self::new(field, &[], &[])
     }
 
-    /// The looks of a plan's field, and the titles of its groups.
-    pub(super) fn of_plan(plan: &Plan) -> Self {
+    /// The looks of a plan's field, and the titles of its groups. `colours` are those of the optimisers in their order; they repeat
+    /// where they are too few.
+    pub(super) fn of_plan(plan: &Plan, colours: &[[u8; 3]]) -> Self {
         let spaces = plan.instances.iter().map(|instance| instance.subject.spaces());
         let spaces = spaces.max_by_key(Vec::len).unwrap_or_default();
         let titles = plan.instances.iter().map(|i| (printable(&i.group), i.title.clone()));
-        Self { titles: titles.collect(), ..Self::with_spaces(&plan.optimisers, &spaces) }
+        Self { titles: titles.collect(), ..Self::new(&plan.optimisers, &spaces, colours) }
     }
 
-    fn with_spaces(field: &[Entrant], spaces: &[String]) -> Self {
+    pub(super) fn new(field: &[Entrant], spaces: &[String], colours: &[[u8; 3]]) -> Self {
         let outsiders = outsiders(field);
         let is_alone = field.windows(2).all(|pair| pair[0].kind == pair[1].kind);
         let mut seen = HashMap::new();
-        let look = |entrant: &Entrant| {
-            let asked = entrant.formulation.as_ref();
-            let space = asked.and_then(|asked| spaces.iter().position(|space| space == asked));
+        let asked = |i: usize| {
+            let &[red, green, blue] = colours.get(i % colours.len().max(1))?;
+            Some(RGBColor(red, green, blue))
+        };
+        let look = |(i, entrant): (usize, &Entrant)| {
+            let formulation = entrant.formulation.as_ref();
+            let space = formulation.and_then(|own| spaces.iter().position(|space| space == own));
             let space = space.unwrap_or(0);
             let alike = (entrant.kind.clone(), entrant.search.clone(), space);
             let twins = seen.entry(alike).or_insert(0);
             let (kind, colour) = kind_of(&entrant.kind, &outsiders);
-            let colour = match *twins / 2 % 3 {
+            let colour = asked(i).unwrap_or_else(|| match *twins / 2 % 3 {
                 _ if is_alone => COLOURS[(kind + *twins) % COLOURS.len()],
                 0 => colour,
                 1 => mix(colour, PAPER, 0.4),
                 _ => mix(colour, INK, 0.5),
-            };
+            });
             let dashes = DASHES[space % DASHES.len()];
             let plain = Stroke { dashes, hollow: *twins % 2 == 1, ..Stroke::plain(colour, 0.32) };
             let (place, _) = kind_of(entrant.search.as_ref().unwrap_or(&entrant.kind), &outsiders);
@@ -101,7 +108,7 @@ impl Looks {
             *twins += 1;
             (printable(&entrant.label), printable(&entrant.kind), stroke)
         };
-        let field: Vec<(String, String, Stroke)> = field.iter().map(look).collect();
+        let field: Vec<(String, String, Stroke)> = field.iter().enumerate().map(look).collect();
         let labels: Vec<&str> = field.iter().map(|(label, _, _)| label.as_str()).collect();
         let names = names(&labels);
         Self { field, names: names.names, note: names.note, titles: HashMap::new() }

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use plotters::style::RGBColor;
 use polars::prelude::*;
 
 use super::charts::left_out;
@@ -349,6 +350,16 @@ fn optimisers_can_be_told_apart() {
             }
         }
     }
+}
+
+/// In the field's order, from the first again where there are too few.
+#[test]
+fn optimisers_take_the_colours_asked_for() {
+    let field = field(5);
+    let looks = Looks::new(&field, &[], &[[255, 0, 0], [0, 0, 255]]);
+    let colours = labels(&field).into_iter().map(|label| looks.stroke(label).colour);
+    let [red, blue] = [RGBColor(255, 0, 0), RGBColor(0, 0, 255)];
+    assert_eq!(colours.collect::<Vec<_>>(), [red, blue, red, blue, red]);
 }
 
 /// 25 dimensions of a function are 25 groups, of which those with stored runs count.

@@ -179,7 +179,7 @@ pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
         goal,
         tool: _,
         limits,
-        momentum,
+        angular_momentum,
         least_duration,
         base_weight,
         goal_tolerance: _,
@@ -205,7 +205,7 @@ pub fn fingerprint(problem: &dyn AnyReorientation) -> String {
         // Cones stand in inertial axes.
         determinants["path"] = json!({ "limits": path, "start": start.base.coords.as_slice() });
     }
-    if let Some(momentum) = momentum {
+    if let Some(momentum) = angular_momentum {
         let at_start = start.base.inverse() * momentum;
         determinants["momentum"] = json!(at_start.as_slice());
     }

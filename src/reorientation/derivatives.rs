@@ -56,7 +56,7 @@ impl<F: Family> Reorientation<F> {
 
     /// How long the shortest motion along a path takes, where the base's error follows that.
     pub(super) fn timing(&self, coefficients: &[f64]) -> Timing {
-        if self.task().momentum.is_none() {
+        if self.task().angular_momentum.is_none() {
             return Timing::default();
         }
         if self.family().is_linear() {
@@ -222,7 +222,7 @@ pub(super) struct Timing {
 
 impl Timing {
     fn of_longest(task: &Task, durations: &[Piece]) -> Self {
-        if task.momentum.is_none() {
+        if task.angular_momentum.is_none() {
             return Self::default();
         }
         let longest = durations.iter().max_by(|a, b| a.value.total_cmp(&b.value));

@@ -233,7 +233,7 @@ impl Excursions {
 }
 
 fn end_rate(task: &Task, places: &[Place]) -> Option<Vector3<f64>> {
-    task.momentum.and_then(|_| Some(places.last()?.base_rate(task)))
+    task.angular_momentum.and_then(|_| Some(places.last()?.base_rate(task)))
 }
 
 fn tool_end(task: &Task, motion: &Motion) -> Option<ToolEnd> {

@@ -107,13 +107,15 @@ impl<'a> MotionFilm<'a> {
         let reach: f64 = film.snapshot(0).links.iter().map(length).sum();
         film.bone = BONE_RADIUS * reach;
         let step = (last / FITTED).max(1);
-        let mut places: Vec<Vector3<f64>> = (0..=last)
-            .step_by(step)
-            .chain([last])
-            .flat_map(|i| film.solids(&film.snapshot(i), i))
-            .flat_map(|solid| solid.form.corners())
-            .collect();
+        let mut places = Vec::new();
+        for sample in (0..=last).step_by(step).chain([last]) {
+            let now = film.snapshot(sample);
+            let solids = film.solids(&now, sample);
+            places.extend(solids.iter().flat_map(|solid| solid.form.corners()));
+            places.extend((0..3).map(|axis| film.axis_end(&now, axis, LETTER)));
+        }
         places.extend(film.goal.iter().flat_map(|line| &line.places));
+        places.extend(film.way.iter().map(|(_, place)| place));
         film.camera = Camera::around(&places, view, size);
         film
     }
@@ -121,6 +123,11 @@ impl<'a> MotionFilm<'a> {
     /// The picture of a sample of the motion.
     pub fn picture(&self, sample: usize) -> Picture {
         self.scene(sample).picture(&self.camera, self.size)
+    }
+
+    /// Where one of the base's axes ends, or so many times as far from the base.
+    fn axis_end(&self, now: &Snapshot, axis: usize, times: f64) -> Vector3<f64> {
+        now.base + now.attitude * Vector3::ith(axis, times * AXIS * self.base_size)
     }
 
     fn snapshot(&self, sample: usize) -> Snapshot {
@@ -142,11 +149,9 @@ impl<'a> MotionFilm<'a> {
         };
         scene.lines.extend([way(ahead.collect(), AHEAD), way(passed.collect(), PASSED)]);
         for (k, (text, colour)) in AXES.into_iter().enumerate() {
-            let end = Vector3::ith(k, AXIS * self.base_size);
-            let place = |place: Vector3<f64>| now.base + now.attitude * place;
-            let places = vec![now.base, place(end)];
+            let places = vec![now.base, self.axis_end(&now, k, 1.0)];
             scene.lines.push(Line { places, colour, width: AXIS_WIDTH, dashes: None });
-            scene.labels.push(Label { text, place: place(end * LETTER), colour });
+            scene.labels.push(Label { text, place: self.axis_end(&now, k, LETTER), colour });
         }
         let left = now.attitude.angle_to(&self.task.goal.base).to_degrees();
         scene.caption.push(format!("t = {:.2} s", now.time));

@@ -183,7 +183,7 @@ impl WayJson {
         });
         let of_joints = of_joints.into_iter().chain([("range", Some(ranges))]);
         let tool = task.tool.as_ref().zip(excursions.tool.as_ref());
-        let drift = task.momentum.zip(excursions.end_rate);
+        let drift = task.angular_momentum.zip(excursions.end_rate);
         let used = |used: &Used| (used.limit.name(), used.share.is_finite().then_some(used.share));
         Self {
             largest_tool_speed_m_s: excursions.tool_speed,

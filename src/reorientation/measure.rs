@@ -122,7 +122,7 @@ impl<F: Family> LaneWork for Fitness<'_, F> {
         };
         let (limits, family) = (&given.task.limits, given.family);
         let largest = family.largest_ratio::<T>(samples, limits, matters, coefficients);
-        let net = if given.task.momentum.is_none() {
+        let net = if given.task.angular_momentum.is_none() {
             Some(Turn { given, coefficients, joints }.run::<T>())
         } else {
             None

@@ -26,7 +26,7 @@ pub struct Motion {
     /// The base's attitude, base axes into inertial axes.
     pub base: Vec<UnitQuaternion<f64>>,
     /// Total angular momentum, inertial axes \[N·m·s\].
-    pub momentum: Vector3<f64>,
+    pub angular_momentum: Vector3<f64>,
 }
 
 /// One joint over time.
@@ -114,7 +114,7 @@ impl Motion {
                 break;
             }
         }
-        Self { time, joints, base, momentum: task.momentum.unwrap_or_default() }
+        Self { time, joints, base, angular_momentum: task.angular_momentum.unwrap_or_default() }
     }
 
     /// Goes on with another motion, which starts where and when this one ends.

@@ -66,7 +66,7 @@ impl Reach {
         if motion.is_within(task.goal_tolerance) {
             return if Self::keeps_limits(motion) { Self::Reached } else { Self::NotFound };
         }
-        if task.momentum.is_some() {
+        if task.angular_momentum.is_some() {
             // Momentum turns the base as well.
             return Self::NotFound;
         }

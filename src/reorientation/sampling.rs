@@ -57,7 +57,7 @@ impl Sampling {
         Self::of_rate(if is_whole { rate.round() } else { rate }).filter(|_| seconds.is_finite())
     }
 
-    /// Finds fault with more samples than [`MOST_SAMPLES`].
+    /// Refuses more samples than [`MOST_SAMPLES`].
     pub fn check(self, duration: f64) -> Result<(), TooManySamples> {
         let most = (MOST_SAMPLES - 2) as f64 / duration;
         match self {

@@ -13,8 +13,8 @@ pub struct ChartOptions {
     pub only: Vec<String>,
     /// Whether logarithmic axes are drawn linear: horizontal ones, vertical ones.
     pub linear: [bool; 2],
-    /// Red, green and blue in the order in which lines take colours; they begin anew where they are too few. Without any, those
-    /// of `okabe-ito`.
+    /// Red, green and blue of the optimisers, in the order of the experiment's file, and of other lines, in their order; they
+    /// repeat where they are too few. If empty, each kind of optimiser has its own colour of `okabe-ito`.
     pub colours: Vec<[u8; 3]>,
 }
 
@@ -43,19 +43,23 @@ pub fn palette(name: &str) -> Option<Vec<[u8; 3]>> {
 }
 
 impl ChartOptions {
-    /// The charts asked for, drawn as asked.
-    pub(super) fn applied(&self, charts: Vec<Chart>) -> Result<Vec<Chart>, ReportError> {
+    /// The charts asked for, with the axes asked for.
+    pub(super) fn chosen(&self, charts: Vec<Chart>) -> Result<Vec<Chart>, ReportError> {
         let names: Vec<&str> = charts.iter().map(|chart| chart.name.as_str()).collect();
         if let Some(missing) = self.only.iter().find(|name| !names.contains(&name.as_str())) {
             return Err(ReportError::NoChart { name: missing.clone(), known: names.join(", ") });
         }
         let is_asked = |chart: &Chart| self.only.is_empty() || self.only.contains(&chart.name);
-        let drawn = |mut chart: Chart| {
-            let figure = chart.figure.with_linear_axes(self.linear);
-            chart.figure = figure.recoloured(|colour| self.colour(colour));
-            chart
-        };
+        let drawn =
+            |chart: Chart| Chart { figure: chart.figure.with_linear_axes(self.linear), ..chart };
         Ok(charts.into_iter().filter(is_asked).map(drawn).collect())
+    }
+
+    /// Charts whose lines are not optimisers, in the colours asked for.
+    pub(super) fn recoloured(&self, charts: Vec<Chart>) -> Vec<Chart> {
+        let of = |colour| self.colour(colour);
+        let recoloured = |chart: Chart| Chart { figure: chart.figure.recoloured(of), ..chart };
+        charts.into_iter().map(recoloured).collect()
     }
 
     /// What a default colour becomes.

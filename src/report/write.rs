@@ -106,9 +106,11 @@ pub fn write_all(
     let (mut tables_written, mut figures_written) = (Vec::new(), Vec::new());
     if kept.is_none() {
         let mut tables = analysis.tables(own.tables)?;
-        let mut charts = plot::charts(plan, &tables, runs.len(), own.leading_charts)?;
-        charts.extend(own.charts);
-        let charts = target.charts.applied(charts)?;
+        let options = &target.charts;
+        let leading = options.recoloured(own.leading_charts);
+        let mut charts = plot::charts(plan, &tables, runs.len(), leading, &options.colours)?;
+        charts.extend(options.recoloured(own.charts));
+        let charts = options.chosen(charts)?;
         tables.extend(own.chart_tables);
         write_tables(&tables, &own.table_names, &folder.join(TABLES_FOLDER))?;
         write_charts(&charts, &own.chart_names, &folder.join(FIGURES_FOLDER))?;

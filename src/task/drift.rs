@@ -14,7 +14,7 @@ use crate::vec3::Vec3;
 impl TaskTable {
     /// Total angular momentum, inertial axes \[N·m·s\]: as stated, or what the base's rate at the start comes to while the joints
     /// stand still. None where it is zero.
-    pub(super) fn momentum(
+    pub(super) fn total_angular_momentum(
         &self,
         start: &Posture,
         robot: &Robot,
@@ -40,14 +40,14 @@ impl TaskTable {
         Ok((momentum.norm() > 0.0).then_some(momentum))
     }
 
-    /// Finds fault with what is not planned for robots that have momentum.
+    /// Refuses what is not planned for robots that have momentum.
     pub(super) fn check_drifting(
         &self,
         task: &Task,
         document: &Document,
     ) -> Result<(), InputError> {
-        let is_spun = self.via.iter().any(|via| via.angular_momentum.is_some());
-        if task.momentum.is_none() && !is_spun {
+        let is_spun = self.via.iter().any(|via| via.get_ref().angular_momentum.is_some());
+        if task.angular_momentum.is_none() && !is_spun {
             return Ok(());
         }
         let (limits, weights) = (&self.limits, &self.weights);
@@ -59,7 +59,7 @@ impl TaskTable {
             ("torque_n_m", span(limits.torque_n_m.as_ref())),
             ("largest_turn", span(weights.largest_turn.as_ref())),
             ("mean_turn", span(weights.mean_turn.as_ref())),
-            ("keep_out", self.keep_out.is_inertial().then_some(0..0)),
+            ("keep_out", self.keep_out.inertial()),
             ("robust", span(self.robust.as_ref())),
         ];
         let mut keys = keys.into_iter().filter_map(|(key, span)| Some((key, span?)));

@@ -51,7 +51,7 @@ pub struct TaskTable {
     #[serde(skip_serializing_if = "KeepOut::is_empty")]
     pub(super) keep_out: KeepOut,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(super) via: Vec<ViaTable>,
+    pub(super) via: Vec<Spanned<ViaTable>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) cycles: Option<Spanned<Cycles>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -309,7 +309,7 @@ impl TaskTable {
 
     /// The same task where the motion lasts so long \[s\] at least, and meets a goal that moves then.
     #[must_use]
-    pub fn lasting(&self, seconds: f64) -> Self {
+    pub fn with_least_duration(&self, seconds: f64) -> Self {
         let met =
             |tool: &Spanned<ToolTable>| Spanned::new(tool.span(), tool.get_ref().met_at(seconds));
         let goal = PostureTable { tool: self.goal.tool.as_ref().map(met), ..self.goal.clone() };
@@ -351,13 +351,13 @@ impl TaskTable {
         }
         let start = reader.posture(&self.start)?;
         let (goal, tool) = self.goal(&reader, &start, &limits)?;
-        let momentum = self.momentum(&start, &robot, document)?;
+        let angular_momentum = self.total_angular_momentum(&start, &robot, document)?;
         let mut task = Task {
             start,
             goal,
             tool,
             limits: Limits(limits),
-            momentum,
+            angular_momentum,
             least_duration: self.limits.least_duration_s.as_ref().map_or(0.0, |s| s.get_ref().0),
             base_weight: weight,
             goal_tolerance: tolerance.to_radians(),
@@ -413,7 +413,7 @@ impl TaskTable {
             None => table.clone(),
         };
         let base = self.goal.base();
-        if self.via.iter().any(ViaTable::changes_load) {
+        if self.via.iter().any(|via| via.get_ref().changes_load()) {
             // Where the tool can be then depends on what it carries.
             return Ok((Posture { joints: start.joints.clone(), base }, None));
         }

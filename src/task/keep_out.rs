@@ -1,11 +1,13 @@
 //! What floats nearby or stands on the base, and the robot has to keep out of.
 
 use std::fmt;
+use std::ops::Range;
 
 use nalgebra::{Rotation3, Vector3};
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
+use toml::Spanned;
 
 use super::frame::Frame;
 use crate::clearance::{Anchor, Solid};
@@ -21,7 +23,7 @@ pub(super) struct KeepOut(Vec<(String, SolidTable)>);
 struct SolidTable {
     #[serde(default)]
     frame: Frame,
-    shapes: Vec<ShapeTable>,
+    shapes: Spanned<Vec<ShapeTable>>,
 }
 
 impl KeepOut {
@@ -29,9 +31,10 @@ impl KeepOut {
         self.0.is_empty()
     }
 
-    /// Whether anything of it stands in inertial axes.
-    pub(super) fn is_inertial(&self) -> bool {
-        self.0.iter().any(|(_, table)| matches!(table.frame, Frame::Inertial))
+    /// Where the file says so, if anything of it stands in inertial axes.
+    pub(super) fn inertial(&self) -> Option<Range<usize>> {
+        let mut tables = self.0.iter().map(|(_, table)| table);
+        tables.find(|table| table.frame == Frame::Inertial).map(|table| table.shapes.span())
     }
 
     /// The solids, where inertial axes have their origin there from the system's centre of mass \[m\].
@@ -42,7 +45,7 @@ impl KeepOut {
                 Frame::Base => (Vector3::zeros(), Anchor::Base),
             };
             let moved = |shape: crate::robot::Shape| shape.moved(&origin, &Rotation3::identity());
-            let shapes = shapes_of(&table.shapes).into_iter().map(moved);
+            let shapes = shapes_of(table.shapes.get_ref()).into_iter().map(moved);
             shapes.map(|shape| Solid { name: name.clone(), shape, anchor }).collect::<Vec<_>>()
         };
         self.0.iter().flat_map(of_one).collect()
@@ -68,7 +71,7 @@ impl<'de> Deserialize<'de> for KeepOut {
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<KeepOut, A::Error> {
                 let mut solids: Vec<(String, SolidTable)> = Vec::new();
                 while let Some((name, table)) = map.next_entry::<String, SolidTable>()? {
-                    if table.shapes.is_empty() {
+                    if table.shapes.get_ref().is_empty() {
                         let message = format!("`{name}` has no shapes, expected at least one");
                         return Err(A::Error::custom(message));
                     }

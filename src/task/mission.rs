@@ -8,6 +8,7 @@ use toml::Spanned;
 
 use super::file::{TaskTable, efforts, robust};
 use super::keep_out::KeepOut;
+use super::pose::ViaTable;
 use super::reader::Reader;
 use super::tool_goal::ToolTable;
 use super::uncertainty::{RobustTable, UncertaintyTable};
@@ -47,8 +48,8 @@ enum Load {
     Same,
     /// What it catches, and the angular momentum of that about its own centre of mass, inertial axes \[N·m·s\].
     Capture(Box<Spanned<PayloadTable>>, Vector3<f64>),
-    /// What it has caught is let go of.
-    Release,
+    /// What it has caught is let go of; where the file says so.
+    Release(Range<usize>),
 }
 
 /// Where a mission stands.
@@ -60,8 +61,8 @@ pub struct Standing {
     pub posture: Posture,
     /// The base's centre of mass in inertial axes, whose origin is where that is at the very start \[m\].
     position: Vector3<f64>,
-    /// Total angular momentum, as [`Task::momentum`].
-    momentum: Option<Vector3<f64>>,
+    /// Total angular momentum, as [`Task::angular_momentum`].
+    angular_momentum: Option<Vector3<f64>>,
 }
 
 impl Standing {
@@ -104,7 +105,7 @@ impl TaskTable {
         let retreat = self.start.retreat_m.as_ref();
         let cycles = self.cycles.as_ref();
         (!self.via.is_empty())
-            .then_some(("via", 0..0))
+            .then(|| ("via", self.via[0].span()))
             .or_else(|| straight.map(|tool| ("approach_m", tool.span())))
             .or_else(|| retreat.map(|retreat| ("retreat_m", retreat.span())))
             .or_else(|| cycles.map(|cycles| ("cycles", cycles.span())))
@@ -127,14 +128,15 @@ impl TaskTable {
         let ends = self.build_ends(document)?;
         let reader = Reader { document, robot: &ends.robot };
         let mut stops = Vec::new();
-        for (number, via) in (1..).zip(&self.via) {
+        for (number, table) in (1..).zip(&self.via) {
             let name = format!("via {number}");
+            let via = table.get_ref();
             let parts = via.parts();
             let base = parts.base().unwrap_or(ends.goal.base);
             let (place, span) = match (&parts.tool, parts.joints_span()) {
                 (Some(tool), None) => (Place::Tool(Box::new(tool.get_ref().clone())), tool.span()),
                 (None, Some(span)) => (Place::Joints(reader.joints(&parts)?), span),
-                (None, None) => (Place::Stay, 0..0),
+                (None, None) => (Place::Stay, table.span()),
                 (Some(_), Some(span)) => {
                     let message =
                         "found both `tool` and the joints' positions, expected one of them";
@@ -147,24 +149,7 @@ impl TaskTable {
                 );
                 return Err(document.error_at(span, message, None));
             }
-            let spin = via.angular_momentum.as_ref();
-            if let (None, Some(spin)) = (&via.capture, spin) {
-                let message =
-                    "found `angular_momentum` without `capture`: it is that of what is caught";
-                return Err(document.error_at(spin.span(), message, None));
-            }
-            let load = match (&via.capture, via.release) {
-                (Some(capture), true) => {
-                    let message = "found both `capture` and `release`, expected one of them";
-                    return Err(document.error_at(capture.span(), message, None));
-                }
-                (Some(capture), false) => {
-                    let spin = spin.map_or([0.0; 3], |spin| spin.get_ref().map(|n| n.0));
-                    Load::Capture(Box::new(capture.clone()), spin.into())
-                }
-                (None, true) => Load::Release,
-                (None, false) => Load::Same,
-            };
+            let load = via.load(document)?;
             stops.push(Stop { name, place, base, span, load });
         }
         if let Some(cycles) = &self.cycles {
@@ -184,7 +169,9 @@ impl TaskTable {
         }
         let (place, span) = match &self.goal.tool {
             Some(tool) => (Place::Tool(Box::new(tool.get_ref().clone())), tool.span()),
-            None => (Place::Joints(ends.goal.joints.clone()), 0..0),
+            None => {
+                (Place::Joints(ends.goal.joints.clone()), self.goal.joints_span().unwrap_or(0..0))
+            }
         };
         if let Place::Tool(tool) = &place
             && tool.straights()[1].is_some()
@@ -226,6 +213,30 @@ impl TaskTable {
     }
 }
 
+impl ViaTable {
+    /// What becomes of the load.
+    fn load(&self, document: &Document) -> Result<Load, InputError> {
+        let spin = self.angular_momentum.as_ref();
+        if let (None, Some(spin)) = (&self.capture, spin) {
+            let message =
+                "found `angular_momentum` without `capture`: it is that of what is caught";
+            return Err(document.error_at(spin.span(), message, None));
+        }
+        match (&self.capture, self.releases()) {
+            (Some(capture), Some(_)) => {
+                let message = "found both `capture` and `release`, expected one of them";
+                Err(document.error_at(capture.span(), message, None))
+            }
+            (Some(capture), None) => {
+                let spin = spin.map_or([0.0; 3], |spin| spin.get_ref().map(|n| n.0));
+                Ok(Load::Capture(Box::new(capture.clone()), spin.into()))
+            }
+            (None, Some(span)) => Ok(Load::Release(span)),
+            (None, None) => Ok(Load::Same),
+        }
+    }
+}
+
 impl Leg {
     /// Where it ends if all goes as planned.
     pub fn end(&self) -> Posture {
@@ -243,7 +254,7 @@ pub(crate) fn end_of(path: &StraightPath) -> Posture {
 }
 
 impl Mission {
-    /// Finds fault with a tool that is to catch something while it carries something, or to let go of nothing.
+    /// Refuses a tool that is to catch something while it carries something, or to let go of nothing.
     fn check_load(&self, has_payload: bool) -> Result<(), InputError> {
         let mut carries = false;
         for Stop { name, load, .. } in &self.stops {
@@ -253,13 +264,13 @@ impl Mission {
                     let message = format!("{name}: the tool carries something already");
                     return Err(self.document.error_at(capture.span(), message, None));
                 }
-                Load::Release if !carries => {
+                Load::Release(span) if !carries => {
                     let message =
                         format!("{name}: found `release`, and the tool has caught nothing");
-                    return Err(self.document.error_at(0..0, message, None));
+                    return Err(self.document.error_at(span.clone(), message, None));
                 }
                 Load::Capture(..) => carries = true,
-                Load::Release => carries = false,
+                Load::Release(_) => carries = false,
             }
         }
         Ok(())
@@ -275,15 +286,24 @@ impl Mission {
         &self.stops[stop].name
     }
 
-    /// Whether the robot's load changes on the way.
-    pub fn changes_load(&self) -> bool {
-        self.stops.iter().any(|stop| !matches!(stop.load, Load::Same))
+    /// Where the file says so, if the robot's load changes on the way.
+    pub fn load_change(&self) -> Option<Range<usize>> {
+        self.stops.iter().find_map(|stop| match &stop.load {
+            Load::Same => None,
+            Load::Capture(capture, _) => Some(capture.span()),
+            Load::Release(span) => Some(span.clone()),
+        })
     }
 
     /// Where it begins.
     pub fn start(&self) -> Standing {
         let (robot, posture) = (self.ends.robot.clone(), self.ends.start.clone());
-        Standing { robot, posture, position: Vector3::zeros(), momentum: self.ends.momentum }
+        Standing {
+            robot,
+            posture,
+            position: Vector3::zeros(),
+            angular_momentum: self.ends.angular_momentum,
+        }
     }
 
     /// How the tool leaves the start, straight back, if it does.
@@ -294,23 +314,23 @@ impl Mission {
 
     /// At the same place once the tool has caught or let go of what it is to.
     pub fn loaded(&self, stop: usize, at: &Standing) -> Result<Standing, InputError> {
-        let Stop { name, load, span, .. } = &self.stops[stop];
+        let Stop { name, load, .. } = &self.stops[stop];
         match load {
             Load::Same => Ok(at.clone()),
-            Load::Release if at.momentum.is_some() => {
+            Load::Release(span) if at.angular_momentum.is_some() => {
                 let message = format!(
                     "{name}: found `release`, expected none for a robot that has angular momentum"
                 );
                 Err(self.document.error_at(span.clone(), message, None))
             }
-            Load::Release => Ok(Standing { robot: self.ends.robot.clone(), ..at.clone() }),
+            Load::Release(_) => Ok(Standing { robot: self.ends.robot.clone(), ..at.clone() }),
             Load::Capture(payload, spin) => {
                 let none = Outfit::none(&self.document);
                 let outfit = Outfit { payload: Some(payload), ..none };
                 let robot = Arc::new(outfit.load((*at.robot).clone())?);
-                let momentum = at.momentum.unwrap_or_default() + spin;
-                let momentum = (momentum.norm() > 0.0).then_some(momentum);
-                Ok(Standing { robot, momentum, ..at.clone() })
+                let sum = at.angular_momentum.unwrap_or_default() + spin;
+                let angular_momentum = (sum.norm() > 0.0).then_some(sum);
+                Ok(Standing { robot, angular_momentum, ..at.clone() })
             }
         }
     }
@@ -329,7 +349,7 @@ impl Mission {
             start: at.posture.clone(),
             goal: at.posture.clone(),
             tool: None,
-            momentum: at.momentum,
+            angular_momentum: at.angular_momentum,
             path,
             uncertainty: uncertainty.transpose()?,
             robust: None,
@@ -358,7 +378,7 @@ impl Mission {
         span: &Range<usize>,
         key: &str,
     ) -> Result<StraightPath, InputError> {
-        if from.momentum.is_some() {
+        if from.angular_momentum.is_some() {
             return Err(self.blocked(&StraightError::Drift, span, key));
         }
         let Posture { joints, base } = &from.posture;
@@ -433,7 +453,7 @@ impl Mission {
 impl Leg {
     /// One whose end is approached straight: the motion before ends where the way back from there leads.
     fn approached(task: Task, straight: &Straight) -> Result<Self, StraightError> {
-        if task.momentum.is_some() {
+        if task.angular_momentum.is_some() {
             return Err(StraightError::Drift);
         }
         let back = straight.path(&task.robot, &task.goal.joints, task.goal.base)?;

@@ -18,11 +18,12 @@ mod way;
 
 use std::sync::Arc;
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
 #[cfg(feature = "harness")]
 use serde_json::{Value, json};
 
 use crate::attitude::Drift;
+use crate::kinematics;
 use crate::robot::Robot;
 use crate::trajectory::{Limits, SinePolynomial, Spline};
 use crate::vec3::Vec3;
@@ -53,7 +54,7 @@ pub struct Task {
     pub limits: Limits,
     /// Total angular momentum about the system's centre of mass, inertial axes \[N·m·s\], where it is not zero. Then where the
     /// base ends follows from the duration, too.
-    pub momentum: Option<Vector3<f64>>,
+    pub angular_momentum: Option<Vector3<f64>>,
     /// The motion is to last no shorter \[s\].
     pub least_duration: f64,
     /// `K_b`, the weight of the base's attitude; time weighs `K_t = 1 − K_b`.
@@ -88,7 +89,7 @@ impl Task {
         if let Some(robust) = &self.robust {
             identity["robust"] = robust.identity();
         }
-        if let Some(momentum) = &self.momentum {
+        if let Some(momentum) = &self.angular_momentum {
             identity["momentum"] = json!(momentum.as_slice());
         }
         if self.least_duration > 0.0 {
@@ -125,14 +126,24 @@ impl Task {
         Self { goal, ..self.clone() }
     }
 
-    /// What turns the base beside the joints, over so many seconds from an attitude on; nothing without momentum.
+    /// Where the tool is at the start, in inertial axes whose origin is the base's centre of mass then \[m\].
+    pub fn tool_at_start(&self) -> Isometry3<f64> {
+        let tool = kinematics::tool(&self.robot, &self.start.joints);
+        let base = self.start.base;
+        let rotation = Rotation3::from_matrix_unchecked(tool.rotation.into());
+        let rotation = base * UnitQuaternion::from_rotation_matrix(&rotation);
+        Isometry3::from_parts((base * Vector3::from(tool.position)).into(), rotation)
+    }
+
+    /// What turns the base besides the joints, over so many seconds from an attitude on; nothing without momentum.
     pub(crate) fn drift(&self, start: UnitQuaternion<f64>, duration: f64) -> Option<Drift> {
-        self.momentum.map(|momentum| Drift { momentum, start, duration })
+        self.angular_momentum.map(|momentum| Drift { momentum, start, duration })
     }
 
     /// The total angular momentum along base axes of this attitude \[N·m·s\].
     pub(crate) fn momentum_at(&self, attitude: &UnitQuaternion<f64>) -> Vec3<f64> {
-        self.momentum.map_or(Vec3::zero(), |momentum| Vec3::of(&(attitude.inverse() * momentum)))
+        self.angular_momentum
+            .map_or(Vec3::zero(), |momentum| Vec3::of(&(attitude.inverse() * momentum)))
     }
 
     /// What is left to do at the start, if it is nothing: the angle \[rad\], within the goal's tolerance, by which the base is off.
@@ -140,7 +151,7 @@ impl Task {
         let residual = self.start.base.angle_to(&self.goal.base);
         let is_there = self.start.joints == self.goal.joints
             && residual <= self.goal_tolerance
-            && self.momentum.is_none();
+            && self.angular_momentum.is_none();
         is_there.then_some(residual)
     }
 

@@ -57,14 +57,19 @@ pub(super) struct ViaTable {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) angular_momentum: Option<Spanned<[Finite; 3]>>,
     /// Whether it lets go of what it has caught.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub(super) release: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) release: Option<Spanned<bool>>,
 }
 
 impl ViaTable {
     /// Whether the tool catches something or lets go of it.
     pub(super) fn changes_load(&self) -> bool {
-        self.capture.is_some() || self.release
+        self.capture.is_some() || self.releases().is_some()
+    }
+
+    /// Where the file says that the tool lets go of what it has caught, if it does.
+    pub(super) fn releases(&self) -> Option<Range<usize>> {
+        self.release.as_ref().filter(|release| *release.get_ref()).map(Spanned::span)
     }
 
     /// The posture.

@@ -33,7 +33,7 @@ pub(super) struct StatedTable {
     pub(super) limits: LimitsTable,
     pub(super) weights: WeightsTable,
     pub(super) keep_out: KeepOut,
-    pub(super) via: Vec<ViaTable>,
+    pub(super) via: Vec<Spanned<ViaTable>>,
     pub(super) cycles: Option<Spanned<Cycles>>,
     pub(super) uncertainty: Option<UncertaintyTable>,
     pub(super) robust: Option<Spanned<RobustTable>>,

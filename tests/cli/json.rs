@@ -75,7 +75,7 @@ fn verbs_of_results_print_objects() {
             "stored",
             "failed",
             "page",
-            "is_replaced",
+            "is_written",
             "tables",
             "figures",
             "lines",

@@ -5,8 +5,9 @@ use crate::analysis::blocks::{ALPHA, Blocks, Unit};
 use crate::analysis::grouped::Analysis;
 use crate::analysis::statistics::median;
 use crate::exhibit::Finding;
-use crate::exhibit::words::{any_of, list, number, p_value, plural, some_of};
+use crate::exhibit::words::{any_of, list, number, p_value, some_of};
 use crate::experiment::Instance;
+use crate::words::plural;
 
 /// How a sentence on pairs begins.
 const WILCOXON: &str = "By Wilcoxon's test with Holm's correction at the 5 % level";

@@ -11,8 +11,9 @@ mod truths;
 use std::collections::HashSet;
 
 use super::grouped::Analysis;
-use crate::exhibit::words::{list, plural};
+use crate::exhibit::words::list;
 use crate::exhibit::{Exhibits, Finding};
+use crate::words::plural;
 
 /// Imported optimisers that are named one by one.
 const MOST_NAMED: usize = 8;

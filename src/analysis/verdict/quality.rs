@@ -2,7 +2,8 @@
 
 use crate::analysis::grouped::Analysis;
 use crate::exhibit::Finding;
-use crate::exhibit::words::{list, plural};
+use crate::exhibit::words::list;
+use crate::words::plural;
 
 /// Costs that exceed the least value by no more are as good.
 const SAME: f64 = 1e-8;

@@ -3,8 +3,9 @@
 use crate::analysis::blocks::Blocks;
 use crate::analysis::grouped::{Analysis, trial};
 use crate::analysis::statistics::{Trial, expected_running_time};
-use crate::exhibit::words::{factor, list, plural, some_of};
+use crate::exhibit::words::{factor, list, some_of};
 use crate::experiment::Run;
+use crate::words::plural;
 
 /// Most optimisers whose factor is told.
 const MOST_TOLD: usize = 4;

@@ -3,9 +3,10 @@
 use super::best::BestMotion;
 use super::words::off_the_goal;
 use crate::exhibit::Finding;
-use crate::exhibit::words::{list, number, percent, plural};
+use crate::exhibit::words::{list, number, percent};
 use crate::experiment::Results;
 use crate::reorientation::subject::TaskSubject;
+use crate::words::plural;
 
 const QUESTION: &str = "What does the motion look like?";
 

@@ -5,10 +5,11 @@ use std::collections::BTreeSet;
 use super::best::BestMotion;
 use super::words::{AT_GOAL_DEG, off_the_goal};
 use crate::exhibit::Finding;
-use crate::exhibit::words::{list, number, plural, span};
+use crate::exhibit::words::{list, number, span};
 use crate::experiment::{Results, Run};
 use crate::reorientation::best_known::BestKnown;
 use crate::reorientation::subject::{SAME_MOTION, TaskSubject};
+use crate::words::plural;
 
 /// Most optimisers that are named as the best.
 const MOST_NAMES: usize = 5;

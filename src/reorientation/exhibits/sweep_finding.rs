@@ -4,8 +4,9 @@ use super::best::BestMotion;
 use super::words::NONE_DEG;
 use crate::analysis::statistics::median;
 use crate::exhibit::Finding;
-use crate::exhibit::words::{number, plural, span};
+use crate::exhibit::words::{number, span};
 use crate::reorientation::subject::SAME_MOTION;
+use crate::words::plural;
 
 /// A group of instances and the best motions of these.
 struct Setting<'a> {

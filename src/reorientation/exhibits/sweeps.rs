@@ -3,7 +3,6 @@
 use super::best::BestMotion;
 use super::words::AT_GOAL_DEG;
 use crate::analysis::statistics::median;
-use crate::exhibit::words::plural;
 use crate::experiment::Instance;
 use crate::figure::Figure;
 use crate::figure::axis::Axis;
@@ -13,6 +12,7 @@ use crate::figure::style::{INK, Marker, PAPER, Stroke, mix};
 use crate::reorientation::sweep::{shown, title};
 use crate::reorientation::symbols::{K_B, T_F};
 use crate::robot::JointKind;
+use crate::words::plural;
 
 /// A setting that can be swept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -111,6 +111,11 @@ impl MotionFormat {
         format!("{} or {last}", all.join(", "))
     }
 
+    /// Whether it can have a load that is caught or let go of on the way.
+    pub fn takes_changing_load(self) -> bool {
+        self != Self::Mujoco
+    }
+
     /// Whether this build can write it.
     pub fn is_available(self) -> bool {
         self != Self::Parquet || cfg!(feature = "harness")

@@ -126,7 +126,7 @@ impl<'a> Record<'a> {
                 motion.joints.iter().map(|joint| joint.derivatives[i][order]).collect()
             });
             let (positions, rates, accelerations) = (&*positions, &*rates, &*accelerations);
-            let angular_momentum = Vec3::of(&(attitude.inverse() * motion.momentum));
+            let angular_momentum = Vec3::of(&(attitude.inverse() * motion.angular_momentum));
             let state = State { positions, rates, accelerations, angular_momentum };
             dynamics.evaluate(robot, state);
             let place = Posture::with(&branches, robot, positions, *attitude).position;

@@ -34,7 +34,7 @@ impl Planner {
         let planners = tasks.into_iter().take(BRANCHES.min(affordable)).map(|task| self.on(task));
         let planners: Vec<Self> = planners.collect::<Result<_, _>>()?;
         if let [only] = &planners[..] {
-            return Ok((0, only.search(search)?));
+            return Ok((0, only.waiting(only.search(search)?, search)?));
         }
         let started = Instant::now();
         let looked =
@@ -80,7 +80,8 @@ impl Planner {
         let none = if interrupted { PlanError::Interrupted } else { PlanError::NoMotion };
         let (branch, best) = best.or(looked).ok_or(none)?;
         spent.seconds = started.elapsed().as_secs_f64();
-        Ok((branch, Planned { spent, interrupted, ..best }))
+        let best = Planned { spent, interrupted, ..best };
+        Ok((branch, planners[branch].waiting(best, search)?))
     }
 
     /// The same for another task.

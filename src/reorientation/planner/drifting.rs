@@ -16,7 +16,7 @@ use crate::trajectory::{Family as _, Spline};
 
 /// Durations that are looked at, longer than the motion that was found by up to a turn of the base by its momentum, but by no more
 /// than so many times that motion's.
-const LOOKS: usize = 400;
+const DURATIONS: usize = 400;
 const LONGEST: f64 = 100.0;
 
 /// Durations that are searched in earnest, and how often one that reaches the goal is shortened.
@@ -33,7 +33,7 @@ impl Planner {
         else {
             return Ok(found);
         };
-        if self.task().momentum.is_none() || !is_wanted(&found) {
+        if self.task().angular_momentum.is_none() || !is_wanted(&found) {
             return Ok(found);
         }
         let other = found.other.clone();
@@ -43,7 +43,10 @@ impl Planner {
             if !is_wanted(&best) || left == 0 {
                 break;
             }
-            let next = match self.lasting(least)?.search(Search { budget: left, ..search }) {
+            let next = match self
+                .with_least_duration(least)?
+                .search(Search { budget: left, ..search })
+            {
                 Err(PlanError::Interrupted) => return Ok(Planned { interrupted: true, ..best }),
                 next => next?,
             };
@@ -58,7 +61,7 @@ impl Planner {
     }
 
     /// The same with motions that last so long at least \[s\].
-    fn lasting(&self, least: f64) -> Result<Self, PlanError> {
+    fn with_least_duration(&self, least: f64) -> Result<Self, PlanError> {
         let task = Task { least_duration: least, ..(**self.task()).clone() };
         Ok(Self { other: None, ..self.clone() }.on(task)?)
     }
@@ -73,7 +76,7 @@ impl Planner {
     ) -> Result<Planned, PlanError> {
         for _ in 0..SHORTER {
             let least = f64::midpoint(too_short, best.assessment.duration);
-            let planner = self.lasting(least)?;
+            let planner = self.with_least_duration(least)?;
             let TaskProblem::Spline(problem, boxes) = &planner.problem else { return Ok(best) };
             let formulated = Formulated::free_form(problem.clone().into())
                 .map_err(|error| self.refused(&error))?;
@@ -102,13 +105,13 @@ fn near_passes(problem: &Reorientation<Spline>, duration: f64) -> Vec<f64> {
     let rate = Vector3::from(response.with(task.momentum_at(&task.start.base))).norm();
     let longest = duration + (TAU / rate).min(LONGEST * duration);
     let straight = vec![0.0; problem.family().dimension()];
-    let time = |k: usize| duration + k as f64 / LOOKS as f64 * (longest - duration);
+    let time = |k: usize| duration + k as f64 / DURATIONS as f64 * (longest - duration);
     let error = |k| problem.error_after(problem.rotation_over(&straight, time(k))).angle();
-    let errors: Vec<f64> = (0..=LOOKS).map(error).collect();
+    let errors: Vec<f64> = (0..=DURATIONS).map(error).collect();
     let is_least = |k: &usize| {
         let beside =
             [k.checked_sub(1), k.checked_add(1)].map(|at| at.and_then(|at| errors.get(at)));
         beside.into_iter().flatten().all(|error| *error > errors[*k])
     };
-    (1..=LOOKS).filter(is_least).map(time).take(TRIES).collect()
+    (1..=DURATIONS).filter(is_least).map(time).take(TRIES).collect()
 }

@@ -176,6 +176,11 @@ impl Planner {
         self.mission.is_some()
     }
 
+    /// Whether the robot's load changes on the way.
+    pub fn changes_load(&self) -> bool {
+        self.mission.as_ref().is_some_and(|mission| mission.load_change().is_some())
+    }
+
     /// The task; of one of several motions from its start to its goal.
     pub fn task(&self) -> &Arc<Task> {
         self.problem.task()
@@ -270,7 +275,7 @@ impl Planner {
         let own_weight = 1.0 - problem.task().base_weight;
         let mut time_weight = own_weight.min(1.0 / found.assessment.duration);
         for number in 1..=MORE_ROUNDS {
-            let left = search.budget - found.spent.evaluations;
+            let left = search.budget.saturating_sub(found.spent.evaluations);
             if found.reach != Reach::NotFound || found.interrupted || left == 0 {
                 break;
             }
@@ -378,7 +383,7 @@ impl Search<'_> {
         problem: &Formulated<Spline>,
         longest: f64,
     ) -> Result<Planned, PlanError> {
-        let budget = self.budget - found.spent.evaluations;
+        let budget = self.budget.saturating_sub(found.spent.evaluations);
         if found.interrupted || budget == 0 {
             return Ok(found);
         }

@@ -6,7 +6,7 @@ use crate::reorientation::reach::Reach;
 use crate::task::{Task, TaskTable};
 
 /// Times \[s\] at which a target is first looked for.
-const LOOKS: [f64; 7] = [8.0, 16.0, 4.0, 32.0, 2.0, 64.0, 1.0];
+const MEETING_TIMES: [f64; 7] = [8.0, 16.0, 4.0, 32.0, 2.0, 64.0, 1.0];
 
 /// How often a later meeting is tried, and by how much later than a motion takes.
 const TRIES: usize = 6;
@@ -15,8 +15,8 @@ const LATER: f64 = 1.01;
 /// The task with its goal where the target is at some time at which the tool can be brought there.
 pub(super) fn reachable(task: TaskTable, document: &Document) -> Result<TaskTable, InputError> {
     let mut refused = None;
-    for time in LOOKS {
-        let met = task.lasting(time);
+    for time in MEETING_TIMES {
+        let met = task.with_least_duration(time);
         match met.build_ends(document) {
             Ok(_) => return Ok(met),
             Err(error) => refused.get_or_insert(error),
@@ -37,7 +37,7 @@ impl Planner {
                 break;
             }
             let time = LATER * found.assessment.duration;
-            let task = self.file.task.lasting(time).build(&self.document)?;
+            let task = self.file.task.with_least_duration(time).build(&self.document)?;
             let next = self.on(task)?.plan_once(Search { budget, ..search })?;
             let is_met = next.reach == Reach::Reached && next.assessment.duration <= time;
             found = Planned { spent: found.spent.and(next.spent), ..next };

@@ -207,5 +207,5 @@ fn sample(task: &Task, points: &Points, base: &BasePath, time: Vec<f64>) -> Moti
     let joints = joints.collect();
     let base = base.at(task, &path, &time);
     let base = base.into_iter().map(|turn| task.start.base * turn).collect();
-    Motion { time, joints, base, momentum: task.momentum.unwrap_or_default() }
+    Motion { time, joints, base, angular_momentum: task.angular_momentum.unwrap_or_default() }
 }

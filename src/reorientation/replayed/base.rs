@@ -56,7 +56,7 @@ impl BasePath {
         let segments = path.segments();
         let most = (MOST_STEPS / segments).max(2);
         let turn = |start, segment| turn(task, path, start, segment, most);
-        let turns: Vec<Turn> = if task.momentum.is_none() {
+        let turns: Vec<Turn> = if task.angular_momentum.is_none() {
             let start = task.start.base;
             (0..segments).into_par_iter().map(|segment| turn(start, segment)).collect()
         } else {
