@@ -8,11 +8,11 @@ use crate::reorientation::{FamilyChoice, FamilyName};
 /// Which motions are searched.
 #[derive(Debug, Args)]
 pub(super) struct FamilyOptions {
-    /// Family of motions, overriding the file's. Splines give faster motions than sine polynomials and reach more goals; `scp`
-    /// uses them unless told otherwise
+    /// Family of motions, overriding the file's. Splines give faster motions than sine polynomials and reach more goals; `plan`
+    /// searches them with `scp` unless told otherwise
     #[arg(long, value_name = "NAME")]
     family: Option<FamilyName>,
-    /// Pieces of a spline, overriding the file's [default: 80 unless the file names a family]
+    /// Pieces of a spline, overriding the file's [default: 80, or 40 if the file says only `family = "spline"`]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(4..=1000))]
     pieces: Option<u16>,
     /// Degree of a spline, overriding the file's: 3 has constant jerk on each piece, 4 continuous jerk, 5 smooth jerk [default: 4]

@@ -63,7 +63,7 @@ impl MotionFiles {
         match self.format()? {
             Some((path, format)) if !format.takes_changing_load() => Err(CliError::Usage {
                 message: format!(
-                    "cannot write {}: the robot's load changes on the way, and a MuJoCo model has one load",
+                    "cannot write {}: the robot's load changes during the motion, and a MuJoCo model has one load",
                     path.display()
                 ),
                 help: None,
@@ -281,7 +281,7 @@ impl fmt::Display for Told<'_> {
         }
         if let Some(rate) = excursions.end_rate {
             lines.push(format!(
-                "  drift          at the end the base goes on turning at {:.4} °/s",
+                "  drift          at the end the base keeps turning at {:.4} °/s",
                 rate.norm().to_degrees()
             ));
         }

@@ -63,7 +63,7 @@ impl TrajectoryOptions {
         if table.is_mission()
             && let Some(span) = table.mission(&document)?.load_change()
         {
-            let message = "found a load that changes on the way, expected a task with the same load throughout";
+            let message = "found a load that changes during the motion, expected a task with the same load throughout";
             return Err(document.error_at(span, message, None).into());
         }
         let robot = table.robot(&document)?;

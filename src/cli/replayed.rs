@@ -97,7 +97,7 @@ impl fmt::Display for Trajectory<'_> {
         )?;
         if let Some(rate) = replayed.excursions.end_rate {
             let rate = rate.norm().to_degrees();
-            writeln!(f, "  drift          at the end the base goes on turning at {rate:.4} °/s")?;
+            writeln!(f, "  drift          at the end the base keeps turning at {rate:.4} °/s")?;
         }
         for other in &replayed.others {
             write_other(f, other, replayed)?;

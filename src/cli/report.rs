@@ -249,7 +249,7 @@ fn tell(plan: &Plan, report: &crate::report::Report) -> Result<(), CliError> {
         say!("\n{question}\n{}", textwrap::fill(answer, line));
     }
     if report.kept.is_none() {
-        say!("\n{}; beside it tables/ and figures/", report.page.display());
+        say!("\n{}, with tables/ and figures/ next to it", report.page.display());
     }
     Ok(())
 }

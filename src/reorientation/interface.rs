@@ -141,7 +141,7 @@ impl Subject for TaskSubject {
                 "clearance_m",
                 "least distance between bodies [m]; negative where they overlap",
             ),
-            on_the_way("path_excess", "the sum of the relative excesses over limits on the way"),
+            on_the_way("path_excess", "the sum of the relative excesses over path limits"),
         ]
     }
 
@@ -223,7 +223,7 @@ impl TaskSubject {
 
 /// A measure of what is on the way.
 fn on_the_way(name: &str, meaning: &str) -> Quantity {
-    let meaning = format!("{meaning}; null where the task asks for nothing on the way");
+    let meaning = format!("{meaning}; null where the task has no path limits");
     Quantity::new(name, ValueKind::Real, &meaning)
 }
 

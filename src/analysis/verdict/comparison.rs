@@ -94,7 +94,7 @@ impl<'a> Standings<'a> {
         format!("{told} {}", self.who_else(first, others))
     }
 
-    /// Who cannot be told from the first.
+    /// Who differs from the first, and who does not.
     fn who_else(&self, first: &[usize], others: &[usize]) -> String {
         if self.is_hopeless() {
             let over = self.blocks_told();
@@ -107,13 +107,13 @@ impl<'a> Standings<'a> {
                 (1, _) => "They".to_owned(),
                 _ => list(&self.names(winners.iter().copied())),
             };
-            let s = if winners.len() == 1 { "s" } else { "" };
+            let (s, do_not) = if winners.len() == 1 { ("s", "does not") } else { ("", "do not") };
             if alike.is_empty() {
                 let rest = if first.len() == 1 { "every other" } else { "the rest" };
                 return format!("{names} differ{s} significantly from {rest}");
             }
             let alike = any_of(&self.names(alike.iter().copied()), others.len());
-            format!("{names} cannot be told from {alike} at the 5 % level")
+            format!("{names} {do_not} differ significantly from {alike} at the 5 % level")
         });
         format!("{}.", told.collect::<Vec<_>>().join("; "))
     }

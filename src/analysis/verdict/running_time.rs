@@ -98,7 +98,7 @@ fn many(
     let compared: Vec<(usize, f64)> = others.iter().filter_map(|&o| factor(o)).collect();
     if !compared.is_empty() {
         told = format!(
-            "{told} In expected running time, summed over the instances where both did, {} as {name}.",
+            "{told} In expected running time, summed over the instances where both reached it, {} evaluations as {name}.",
             factors(analysis, &compared)
         );
     }

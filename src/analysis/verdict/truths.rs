@@ -20,7 +20,7 @@ fn running_times_compare_where_both_reach_the_target() {
     assert!(
         by.ends_with(
             "The hardest target that de reached, f ≤ 1e-8, was reached on 4 of 4 instances by de and on 1 by random. In \
-             expected running time, summed over the instances where both did, random needs 2.0 times as many as de."
+             expected running time, summed over the instances where both reached it, random needs 2.0 times as many evaluations as de."
         ),
         "{by}"
     );
@@ -90,8 +90,7 @@ fn each_of_the_level_ones_is_told_from_the_rest_by_itself() {
         who.starts_with("random and de are level: they share the lowest mean rank, 1.62"),
         "{who}"
     );
-    let rest =
-        "random differs significantly from the rest; de cannot be told from pso at the 5 % level.";
+    let rest = "random differs significantly from the rest; de does not differ significantly from pso at the 5 % level.";
     assert!(who.ends_with(rest), "{who}");
     let significance = answer(&told, "Is it significant?");
     let pairs = "random differs from pso; de does not differ significantly from pso.";

@@ -56,9 +56,9 @@ pub(super) fn motion_charts(motion: &Motion, task: &Task) -> Vec<Chart> {
     ];
     charts.extend(on_the_way(motion, task).map(|figure| {
         let caption =
-            "What the task limits on the way, over time; dotted lines are the limits. A torque is that of the joint \
+            "Path limits of the task over time; dotted lines are the limits. A torque is that of the joint \
              which is nearest to its limit, a clearance that of the nearest bodies.";
-        chart("on-the-way", "Limits on the way", caption, figure)
+        chart("on-the-way", "Path limits", caption, figure)
     }));
     charts.push(
         chart(

@@ -16,7 +16,9 @@ pub(super) fn write(folder: &Path, record: &Record<'_>) -> Result<(), ExportErro
         return Err(error("found some of the robot's joints, expected all"));
     }
     if !record.is_one_robot {
-        return Err(error("found a load that is caught or let go of on the way, expected none"));
+        return Err(error(
+            "found a load that is caught or released during the motion, expected none",
+        ));
     }
     let robot = record.robot.with_shapes().0.to_mjcf();
     let motion = csv::wide(record)?;
