@@ -1,9 +1,7 @@
 //! Torques and speeds against Pinocchio (`reference/dynamics.json`, made by `reference/make_dynamics.py`, for the robots that come with
 //! the program and for trees of `reference/trees.json`), slopes against differences, and what both must hold to.
 
-mod drawn;
-
-use drawn::Tree;
+use crate::drawn::{self, Tree};
 use driftless::dynamics::{
     Dynamics, Quantity, Slopes, State, joint_torques, tool_velocity, torque_slopes,
 };

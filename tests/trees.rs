@@ -2,9 +2,7 @@
 //! (`reference/trees.json`, made by `reference/make_trees.py`), and one way of going through them against
 //! another.
 
-mod drawn;
-
-use drawn::Tree;
+use crate::drawn::{self, Tree};
 use driftless::kinematics::tool;
 use driftless::momentum::{
     Arm, RateSlopes, base_map, base_twist, generalised_jacobian, total_momentum,
