@@ -22,8 +22,6 @@ mod drift;
 mod dynamics;
 #[path = "examples.rs"]
 mod examples;
-#[path = "experiment.rs"]
-mod experiment;
 #[path = "export.rs"]
 mod export;
 #[path = "floors.rs"]

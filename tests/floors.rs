@@ -282,15 +282,18 @@ fn no_files_of_a_module_use_each_other_in_a_circle() {
     assert!(told.is_empty(), "circles:\n{}", told.join("\n"));
 }
 
-/// A file that `tests/all.rs` does not name would not be compiled.
+/// A file that neither `tests/all.rs` nor `Cargo.toml` names would not be compiled.
 #[test]
 fn every_file_of_tests_is_run() {
-    let named = fs::read_to_string("tests/all.rs").unwrap();
+    let [modules, programs] =
+        ["tests/all.rs", "Cargo.toml"].map(|file| fs::read_to_string(file).unwrap());
     let files = files(Path::new("tests"));
     let own = files.iter().filter(|file| file.parent() == Some(Path::new("tests")));
     let names: Vec<_> = own.filter_map(|file| file.file_stem()?.to_str()).collect();
     assert!(names.len() > 30, "{names:?}");
-    for name in names.into_iter().filter(|name| *name != "all") {
-        assert!(named.contains(&format!("mod {name};")), "tests/all.rs does not name {name}");
+    for name in names {
+        let is_named = modules.contains(&format!("mod {name};"))
+            || programs.contains(&format!("[[test]]\nname = \"{name}\""));
+        assert!(is_named, "tests/all.rs does not name {name}");
     }
 }

@@ -91,10 +91,6 @@ impl Check {
             Some(Kind::Experiment) => check_experiment(&document, !self.no_estimate)?,
             _ => check_task(&document)?,
         };
-        if self.no_estimate && checked.kind != "experiment" {
-            let message = "found --no-estimate, which is for experiments".to_owned();
-            return Err(CliError::Usage { message, help: None });
-        }
         if self.json { say_json(&checked.json(&self.file)?) } else { checked.say() }
     }
 }

@@ -4,9 +4,9 @@ use clap::Args;
 use polars::prelude::*;
 use serde::Serialize;
 
+use super::CliError;
 use super::results::{ResultsFolder, command};
 use super::warnings::warn_of_damage;
-use super::{CliError, say_json};
 use crate::analysis::render;
 use crate::experiment::{Damage, FailedRun, Folder, Standing, Tally, standing};
 use crate::words::plural;
@@ -99,7 +99,8 @@ impl Status {
         let standing = standing(&results.plan, &results.store)?;
         let batches = results.store.batch_count()?;
         if self.json {
-            return say_json(&json(&results, &standing, batches));
+            say!("{}", serde_json::json!(json(&results, &standing, batches)));
+            return Ok(());
         }
         tell(&results, &standing, batches)
     }

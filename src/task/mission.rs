@@ -436,7 +436,8 @@ impl Mission {
                     }
                 },
             };
-            match leg.task.impossible() {
+            let at_its_end = || leg.approach.as_ref().and_then(|(_, task)| task.impossible());
+            match leg.task.impossible().or_else(at_its_end) {
                 None => legs.push(leg),
                 Some(impossible) => {
                     refused.get_or_insert_with(|| failed(impossible.reason));

@@ -55,11 +55,23 @@ fn files_of_another_kind_are_named() {
     std::fs::write(folder.path().join("results/experiment.toml"), "name = 'e'\n").unwrap();
     let task = "expected a task file";
     let mut cases = vec![
-        ("plan", "experiment.toml", "is an experiment file", task, "`driftless run` takes it"),
+        (
+            "plan",
+            "experiment.toml",
+            "is an experiment file",
+            task,
+            "`driftless run`, `submit` and `check` take it",
+        ),
         ("plan", "robot.toml", "is a robot", task, "a task names it"),
         ("plan", "robot.urdf", "is a robot", task, "a task names it"),
-        ("plan", "motion.toml", "is a motion file", task, "`driftless replay` takes it"),
-        ("plan", "motion.csv", "is a trajectory", task, "`driftless replay` takes it"),
+        (
+            "plan",
+            "motion.toml",
+            "is a motion file",
+            task,
+            "`driftless replay` and `animate` take it",
+        ),
+        ("plan", "motion.csv", "is a trajectory", task, "`driftless replay` and `animate` take it"),
         ("plan", "empty", "is a folder", task, ""),
         ("plan", "results", "is a folder of results", task, "`driftless report`"),
         ("replay", "task.toml", "is a task file", "expected a motion file", "`driftless plan`"),

@@ -315,7 +315,12 @@ fn several_motions_are_one_file() {
     }
     let refused = plan("m.mujoco");
     let message = said(&stderr(&refused));
-    assert!(message.contains("found a load that is caught or let go of on the way"), "{message}");
+    assert!(
+        message.contains(
+            "the robot's load changes during the motion, and a MuJoCo model has one load"
+        ),
+        "{message}"
+    );
     assert!(!folder.path().join("m.mujoco").exists());
 }
 

@@ -71,6 +71,6 @@ fn limits_on_the_way_are_shown() {
         let chart = folder.path().join("out/figures/on-the-way.svg");
         assert_eq!(chart.exists(), has_limits);
         let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-        assert_eq!(page.contains("Limits on the way</"), has_limits);
+        assert_eq!(page.contains("Path limits</"), has_limits);
     }
 }
