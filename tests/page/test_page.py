@@ -3,10 +3,12 @@
 import base64
 import gzip
 import math
+import os
 import re
 import sys
 import time
 import xml.etree.ElementTree as xml
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import stored
@@ -309,34 +311,44 @@ def check_large(browser, path, checks, pictures):
     return seconds
 
 
-def main(results, pictures, axe):
-    checks, motions = Checks(), 0
-    folders = sorted(path.parent for path in results.glob("*/report.html"))
+def check_page(folder, pictures, axe):
+    """What is wrong with a page, how much was checked and how many motions it has."""
+    checks, motions, path = Checks(), 0, folder / "report.html"
+    size = path.stat().st_size
+    checks.that(size < MOST_BYTES, f"{folder.name}: {size} bytes")
+    is_task = "task" in stored.experiment(folder)
     with chromium() as browser:
-        for folder in folders:
-            path = folder / "report.html"
-            size, before = path.stat().st_size, checks.made
-            checks.that(size < MOST_BYTES, f"{folder.name}: {size} bytes")
-            is_task = "task" in stored.experiment(folder)
-            with opened(browser, path, checks) as page:
-                check_structure(page, checks, folder.name, axe)
-                check_tables(page, folder, checks)
-                check_files(page, folder, checks)
-                checks.equal(page.locator("canvas").count(), int(is_task), f"{folder.name}: views")
-                if is_task:
-                    check_motion(page, folder, checks)
-                    motions += check_ends(page, folder, checks)
-                    check_largest_turn(page, folder, checks)
-                    check_worst_moments(page, folder, checks)
-                check_keyboard(page, checks, folder.name)
-            check_looks(browser, path, checks, pictures)
-            if folder.name == "default":
-                check_film(browser, path, checks)
-            print(f"{folder.name:14} {size / 1e3:6.0f} kB {checks.made - before:5} checks", flush=True)
-        seconds = check_large(browser, results / "default" / "report.html", checks, pictures)
+        with opened(browser, path, checks) as page:
+            check_structure(page, checks, folder.name, axe)
+            check_tables(page, folder, checks)
+            check_files(page, folder, checks)
+            checks.equal(page.locator("canvas").count(), int(is_task), f"{folder.name}: views")
+            if is_task:
+                check_motion(page, folder, checks)
+                motions += check_ends(page, folder, checks)
+                check_largest_turn(page, folder, checks)
+                check_worst_moments(page, folder, checks)
+            check_keyboard(page, checks, folder.name)
+        check_looks(browser, path, checks, pictures)
+        if folder.name == "default":
+            check_film(browser, path, checks)
+    print(f"{folder.name:14} {size / 1e3:6.0f} kB {checks.made:5} checks", flush=True)
+    return checks.failed, checks.made, motions
+
+
+def main(results, pictures, axe):
+    folders = sorted(path.parent for path in results.glob("*/report.html"))
+    # A page mostly waits for its browser.
+    with ThreadPoolExecutor(2 * os.cpu_count()) as pool:
+        found = list(pool.map(lambda folder: check_page(folder, pictures, axe), folders))
+    large = Checks()
+    with chromium() as browser:
+        seconds = check_large(browser, results / "default" / "report.html", large, pictures)
+    failed = [message for own, _, _ in found for message in own] + large.failed
+    made, motions = sum(made for _, made, _ in found) + large.made, sum(motions for _, _, motions in found)
     print(f"ten thousand rows open in {seconds:.1f} s; axe {'ran' if axe.exists() else 'is not there'}")
-    print(f"{len(folders)} pages, {motions} motions, {checks.made} checks, {len(checks.failed)} failed")
-    return bool(checks.failed) or not folders
+    print(f"{len(folders)} pages, {motions} motions, {made} checks, {len(failed)} failed")
+    return bool(failed) or not folders
 
 
 if __name__ == "__main__":
