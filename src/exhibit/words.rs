@@ -7,7 +7,11 @@ pub(crate) fn number(value: f64) -> String {
 
 /// How many times as much.
 pub(crate) fn factor(value: f64) -> String {
-    if value < 10.0 { format!("{value:.1}") } else { format!("{value:.0}") }
+    match value {
+        0.0..0.1 => significant(value, 1),
+        0.1..10.0 => format!("{value:.1}"),
+        _ => format!("{value:.0}"),
+    }
 }
 
 /// A p-value with its sign of relation.

@@ -1,4 +1,4 @@
-//! A motion as a film: the robot, the goal of its base, the way of its tool, and what it keeps out of.
+//! A motion as a film: the robot, the goal of its base, the path of its tool, and what it keeps out of.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
@@ -24,7 +24,7 @@ const AHEAD: [u8; 3] = [224, 196, 198];
 const AXES: [(&str, [u8; 3]); 3] = [("x", [181, 71, 8]), ("y", [0, 112, 79]), ("z", [0, 90, 150])];
 
 /// Widths of lines in a picture of 1080 rows \[pixels\], and the goal's dashes.
-const WAY_WIDTH: f64 = 4.0;
+const PATH_WIDTH: f64 = 4.0;
 const GOAL_WIDTH: f64 = 2.4;
 const GOAL_DASH: f64 = 10.0;
 const AXIS_WIDTH: f64 = 4.5;
@@ -39,8 +39,8 @@ const BONE_RADIUS: f64 = 0.008;
 /// By how much every other body of the arm is wider than it is: of two with the same round end at a joint one is seen there.
 const WIDER: f64 = 1.01;
 
-/// Most pieces of the tool's way.
-const WAY_PIECES: usize = 600;
+/// Most pieces of the tool's path.
+const PATH_PIECES: usize = 600;
 
 /// Most postures that the view is chosen for.
 const FITTED: usize = 120;
@@ -65,7 +65,7 @@ pub struct MotionFilm<'a> {
     /// Edges of the base at its goal.
     goal: Vec<Line>,
     /// Places of the tool, and the sample of each.
-    way: Vec<(usize, Vector3<f64>)>,
+    path: Vec<(usize, Vector3<f64>)>,
     camera: Camera,
     size: Size,
 }
@@ -78,8 +78,8 @@ impl<'a> MotionFilm<'a> {
         let blocks = satellite.blocks();
         let last = motion.time.len().saturating_sub(1);
         let snapshot = |i: usize| Snapshot::of(task, &branches, motion, i);
-        let pieces = WAY_PIECES.min(last).max(1);
-        let way = (0..=pieces).map(|k| k * last / pieces).map(|i| (i, snapshot(i).tool));
+        let pieces = PATH_PIECES.min(last).max(1);
+        let path = (0..=pieces).map(|k| k * last / pieces).map(|i| (i, snapshot(i).tool));
         let keep_outs = task.path.clearance.iter().flat_map(ClearanceLimit::solids);
         let keep_outs = keep_outs.map(|solid| {
             let form = form(&solid.shape, &Vector3::zeros(), &Rotation3::identity());
@@ -98,7 +98,7 @@ impl<'a> MotionFilm<'a> {
             bone: 0.0,
             keep_outs: keep_outs.collect(),
             goal: goal(task, &blocks),
-            way: way.collect(),
+            path: path.collect(),
             camera: Camera::around(&[], view, size),
             size,
             branches,
@@ -115,7 +115,7 @@ impl<'a> MotionFilm<'a> {
             places.extend((0..3).map(|axis| film.axis_end(&now, axis, LETTER)));
         }
         places.extend(film.goal.iter().flat_map(|line| &line.places));
-        places.extend(film.way.iter().map(|(_, place)| place));
+        places.extend(film.path.iter().map(|(_, place)| place));
         film.camera = Camera::around(&places, view, size);
         film
     }
@@ -138,16 +138,16 @@ impl<'a> MotionFilm<'a> {
         let now = self.snapshot(sample);
         let mut scene = Scene { solids: self.solids(&now, sample), ..Scene::default() };
         scene.lines.extend(self.goal.iter().cloned());
-        let (passed, ahead): (Vec<_>, Vec<_>) = self.way.iter().partition(|(i, _)| *i <= sample);
+        let (passed, ahead): (Vec<_>, Vec<_>) = self.path.iter().partition(|(i, _)| *i <= sample);
         let passed = passed.into_iter().map(|(_, place)| place).chain([now.tool]);
         let ahead = std::iter::once(now.tool).chain(ahead.into_iter().map(|(_, place)| place));
-        let way = |places: Vec<Vector3<f64>>, colour| Line {
+        let path = |places: Vec<Vector3<f64>>, colour| Line {
             places,
             colour,
-            width: WAY_WIDTH,
+            width: PATH_WIDTH,
             dashes: None,
         };
-        scene.lines.extend([way(ahead.collect(), AHEAD), way(passed.collect(), PASSED)]);
+        scene.lines.extend([path(ahead.collect(), AHEAD), path(passed.collect(), PASSED)]);
         for (k, (text, colour)) in AXES.into_iter().enumerate() {
             let places = vec![now.base, self.axis_end(&now, k, 1.0)];
             scene.lines.push(Line { places, colour, width: AXIS_WIDTH, dashes: None });
