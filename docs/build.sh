@@ -6,7 +6,8 @@ cd "$(dirname "$0")/.."
 target=${CARGO_TARGET_DIR:-target}
 tools=$(mkdir -p "$target/tools" && cd "$target/tools" && pwd)
 export PATH=$tools/bin:$PATH
-command -v mdbook > /dev/null || cargo install --quiet --locked --debug --no-default-features --root "$tools" mdbook
+command -v mdbook > /dev/null ||
+    CARGO_PROFILE_DEV_DEBUG=0 cargo install --quiet --locked --debug --no-default-features --root "$tools" mdbook
 mdbook build docs --dest-dir "$(cd "$target" && pwd)/book"
 [ -x "$tools/links/bin/python" ] || python3 -m venv "$tools/links"
 "$tools/links/bin/python" -m pip install --quiet --disable-pip-version-check md-dead-link-check==1.3.0
