@@ -13,10 +13,6 @@ pub(super) struct PngFile<'a> {
     before: Option<Picture>,
 }
 
-fn error(source: &EncodingError) -> FilmError {
-    FilmError::Encode { format: "PNG", reason: source.to_string() }
-}
-
 impl<'a> PngFile<'a> {
     /// Of so many pictures.
     pub(super) fn new(
@@ -28,8 +24,8 @@ impl<'a> PngFile<'a> {
         encoder.set_color(ColorType::Rgba);
         encoder.set_depth(BitDepth::Eight);
         encoder.set_compression(Compression::Default);
-        encoder.set_animated(pictures as u32, 0).map_err(|e| error(&e))?;
-        Ok(Self { writer: encoder.write_header().map_err(|e| error(&e))?, size, before: None })
+        encoder.set_animated(pictures as u32, 0)?;
+        Ok(Self { writer: encoder.write_header()?, size, before: None })
     }
 
     /// Goes on with pictures, each of which stays for some milliseconds.
@@ -43,7 +39,7 @@ impl<'a> PngFile<'a> {
             if !go_on() {
                 return Err(FilmError::Interrupted);
             }
-            self.add(&picture, *delay).map_err(|e| error(&e))?;
+            self.add(&picture, *delay)?;
             self.before = Some(picture);
         }
         Ok(())
@@ -72,6 +68,6 @@ impl<'a> PngFile<'a> {
 
     /// Ends the file.
     pub(super) fn finish(self) -> Result<(), FilmError> {
-        self.writer.finish().map_err(|e| error(&e))
+        Ok(self.writer.finish()?)
     }
 }

@@ -32,3 +32,15 @@ pub enum FilmError {
     #[error("interrupted before the film was written")]
     Interrupted,
 }
+
+impl From<gif::EncodingError> for FilmError {
+    fn from(error: gif::EncodingError) -> Self {
+        Self::Encode { format: "GIF", reason: error.to_string() }
+    }
+}
+
+impl From<png::EncodingError> for FilmError {
+    fn from(error: png::EncodingError) -> Self {
+        Self::Encode { format: "PNG", reason: error.to_string() }
+    }
+}

@@ -1,6 +1,6 @@
 //! GIF: one palette for all, and of each picture what differs from the one before.
 
-use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
+use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use rayon::prelude::*;
 
 use super::difference::Part;
@@ -16,18 +16,13 @@ pub(super) struct GifFile {
     before: Option<Vec<u8>>,
 }
 
-fn error(source: &EncodingError) -> FilmError {
-    FilmError::Encode { format: "GIF", reason: source.to_string() }
-}
-
 impl GifFile {
     /// With the palette of some of its pictures.
     pub(super) fn new(size: Size, samples: &[Picture]) -> Result<Self, FilmError> {
         let palette = Palette::of(samples);
         let (width, height) = (size.width as u16, size.height as u16);
-        let encoder = Encoder::new(Vec::new(), width, height, &palette.bytes());
-        let mut encoder = encoder.map_err(|e| error(&e))?;
-        encoder.set_repeat(Repeat::Infinite).map_err(|e| error(&e))?;
+        let mut encoder = Encoder::new(Vec::new(), width, height, &palette.bytes())?;
+        encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self { encoder, size, palette, before: None })
     }
 
@@ -46,7 +41,7 @@ impl GifFile {
             })
             .collect();
         for frame in &frames {
-            self.encoder.write_lzw_pre_encoded_frame(frame).map_err(|e| error(&e))?;
+            self.encoder.write_lzw_pre_encoded_frame(frame)?;
         }
         self.before = all.pop();
         Ok(())
@@ -54,7 +49,7 @@ impl GifFile {
 
     /// The whole file.
     pub(super) fn finish(self) -> Result<Vec<u8>, FilmError> {
-        self.encoder.into_inner().map_err(|e| error(&e))
+        Ok(self.encoder.into_inner()?)
     }
 }
 

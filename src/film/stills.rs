@@ -18,10 +18,8 @@ pub(super) fn write(
 ) -> Result<(), FilmError> {
     let digits = count.to_string().len();
     pictures.par_iter().enumerate().try_for_each(|(i, picture)| {
-        let error =
-            |source: EncodingError| FilmError::Encode { format: "PNG", reason: source.to_string() };
         let name = format!("frame-{:0digits$}.png", first + i);
-        Ok(write_file(&folder.join(name), &png(picture).map_err(error)?)?)
+        Ok(write_file(&folder.join(name), &png(picture)?)?)
     })
 }
 
