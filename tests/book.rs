@@ -146,7 +146,10 @@ fn prepare(page: &str, sandbox: &Sandbox) {
         "docs/animate.md" | "docs/gallery.md" | "docs/motions.md" => {
             &["driftless run example.toml"]
         }
-        "docs/cluster.md" => &["sed s/example/experiment/ example.toml > experiment.toml"],
+        "docs/cluster.md" => &[
+            "sed s/example/experiment/ example.toml > experiment.toml",
+            "driftless run experiment.toml --shard 0/4",
+        ],
         "docs/experiments.md" => &["driftless run example.toml --out results/mine"],
         "docs/import.md" => &[
             "driftless run example.toml --out results/ours",

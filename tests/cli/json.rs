@@ -122,7 +122,7 @@ fn charts_are_drawn_as_asked() {
         assert_eq!(count(&own, "#445566"), count(&plain, "#56b4e9"));
         assert!(!own.contains("#56b4e9"), "{colours}");
     }
-    assert!(svg("tol", &["--colours", "tol-bright"]).contains("#aa3377"));
+    assert!(svg("tol", &["--colours", "tol-bright"]).contains("#ee6677"));
     for (options, expected) in [
         (
             ["--charts", "pareto"],
