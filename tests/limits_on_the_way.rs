@@ -157,6 +157,11 @@ fn mistakes_are_told_where_they_are() {
     };
     let cases = [
         ("[task.limits]\nbase_turn_deg = -1\n", "task.toml: 2:17: found -1"),
+        // Half of the paper's turn of 17.3°.
+        (
+            "[task.limits]\nbase_turn_deg = 8.6\n",
+            "2:17: on its way from start to goal the base is turned by 8.6",
+        ),
         ("[task.limits]\nclearance_m = nan\n", "finite number, zero or above"),
         ("[task.limits]\nbase_turn_from = 'end'\n", "`start`, `goal`, `nearer`"),
         ("[task.limits]\ntorque_n_m = [1, 2]\n", "found 2 values, expected 6"),

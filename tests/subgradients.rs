@@ -169,7 +169,7 @@ fn of_splines() {
 
 /// What tasks may ask for on the way, each narrow enough to be broken.
 const ON_THE_WAY: [&str; 10] = [
-    "limits = { base_turn_deg = 4 }\n",
+    "limits = { base_turn_deg = 9 }\n",
     "limits = { base_turn_deg = 19, base_turn_from = 'start' }\n",
     "limits = { base_cone = [\n\
      { axis = [0, 0, 1], from = [0.1, 0.2, 1], within_deg = 22 },\n\

@@ -156,6 +156,9 @@ impl Animate {
             Some(label) => chosen.find(|best| best.instance.label == *label),
         };
         if let Some(best) = best {
+            let label = &best.instance.label;
+            let of = if label.is_empty() { String::new() } else { format!(" of `{label}`") };
+            note!("note: the best motion{of}, by {}, seed {}", best.optimiser, best.run.seed);
             let sample = |intervals: usize| best.sample(intervals);
             return self.draw(best.problem.task(), best.duration, format, sample);
         }

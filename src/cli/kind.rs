@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::CliError;
-use crate::input::{Document, InputError};
+use crate::input::{Document, InputError, nearest};
 use crate::reorientation::{GivenTrajectory, TaskFile};
 use crate::robot::Robot;
 
@@ -173,8 +173,20 @@ pub(super) fn read_task(file: Option<&Path>) -> Result<Document, CliError> {
     let Some(file) = file else { return Ok(TaskFile::paper()) };
     match shipped(file) {
         Some((robot, _)) => Ok(Document::embedded(robot, &format!("[task]\nrobot = {robot:?}\n"))),
-        None => read(file, Kind::Task),
+        None => read(file, Kind::Task).map_err(|error| match (error, nearest_robot(file)) {
+            (CliError::Unreadable { .. }, Some(robot)) => CliError::Usage {
+                message: format!("found neither a file nor a robot `{}`", file.display()),
+                help: Some(format!("did you mean the robot `{robot}`?")),
+            },
+            (error, _) => error,
+        }),
     }
+}
+
+/// The robot that comes with the program and whose name is nearest to what is no file.
+fn nearest_robot(path: &Path) -> Option<&'static str> {
+    let name = path.to_str().filter(|_| !path.exists())?;
+    nearest(name, Robot::embedded_names())
 }
 
 /// A robot that comes with the program and its file, where a path is its name and no file's.

@@ -28,7 +28,7 @@ const MOST_IN_A_PANEL: usize = 8;
 
 /// How the optimisers of a field look, by label: colour tells the kind, dashes the formulation, the
 /// marker the kind or, of a hybrid, what searches first. Kinds of other programs have colours that none
-/// of this program's has. Of several that share all this, every other one has hollow markers, and later
+/// of this program's has, and markers that are free. Of several that share all this, every other one has hollow markers, and later
 /// ones lighter and darker colours; where the whole field is of one kind, colours and markers of their own.
 #[derive(Debug, Clone)]
 pub(super) struct Looks {
@@ -53,13 +53,24 @@ fn outsiders(field: &[Entrant]) -> Vec<&str> {
     kinds
 }
 
+/// Places among the markers that no kind of a field has; all, if none is free.
+fn free_markers(field: &[Entrant]) -> Vec<usize> {
+    let is_taken = |kind: &&str| {
+        let own = |entrant: &Entrant| entrant.search.as_ref().unwrap_or(&entrant.kind) == kind;
+        field.iter().any(own)
+    };
+    let free = KINDS.iter().enumerate().filter(|(_, kind)| !is_taken(kind));
+    let free: Vec<usize> = free.map(|(place, _)| place).collect();
+    if free.is_empty() { (0..KINDS.len()).collect() } else { free }
+}
+
 /// A kind's place among the markers, and its colour.
-fn kind_of(kind: &str, outsiders: &[&str]) -> (usize, RGBColor) {
+fn kind_of(kind: &str, outsiders: &[&str], free: &[usize]) -> (usize, RGBColor) {
     if let Some(place) = KINDS.iter().position(|name| *name == kind) {
         return (place, COLOURS[place]);
     }
     let place = outsiders.iter().position(|name| *name == kind).unwrap_or_default();
-    (place, OUTSIDE_COLOURS[place % OUTSIDE_COLOURS.len()])
+    (free[place % free.len()], OUTSIDE_COLOURS[place % OUTSIDE_COLOURS.len()])
 }
 
 impl Looks {
@@ -79,7 +90,7 @@ impl Looks {
     }
 
     pub(super) fn new(field: &[Entrant], spaces: &[String], colours: &[[u8; 3]]) -> Self {
-        let outsiders = outsiders(field);
+        let (outsiders, free) = (outsiders(field), free_markers(field));
         let is_alone = field.windows(2).all(|pair| pair[0].kind == pair[1].kind);
         let mut seen = HashMap::new();
         let asked = |i: usize| {
@@ -92,7 +103,7 @@ impl Looks {
             let space = space.unwrap_or(0);
             let alike = (entrant.kind.clone(), entrant.search.clone(), space);
             let twins = seen.entry(alike).or_insert(0);
-            let (kind, colour) = kind_of(&entrant.kind, &outsiders);
+            let (kind, colour) = kind_of(&entrant.kind, &outsiders, &free);
             let colour = asked(i).unwrap_or_else(|| match *twins / 2 % 3 {
                 _ if is_alone => COLOURS[(kind + *twins) % COLOURS.len()],
                 0 => colour,
@@ -101,7 +112,8 @@ impl Looks {
             });
             let dashes = DASHES[space % DASHES.len()];
             let plain = Stroke { dashes, hollow: *twins % 2 == 1, ..Stroke::plain(colour, 0.32) };
-            let (place, _) = kind_of(entrant.search.as_ref().unwrap_or(&entrant.kind), &outsiders);
+            let (place, _) =
+                kind_of(entrant.search.as_ref().unwrap_or(&entrant.kind), &outsiders, &free);
             // Six of a kind have its own marker, the next six another.
             let further = if is_alone { *twins } else { *twins / 6 };
             let stroke = plain.with_marker(Marker::ALL[(place + further) % Marker::ALL.len()]);

@@ -379,7 +379,9 @@ impl TaskTable {
         }
         self.check_drifting(&task, document)?;
         let (task, impossible) = self.branched(task, document)?;
-        match impossible {
+        // Every motion of a mission has a turn of its own.
+        let too_far = || task.impossible_turn().filter(|_| !self.is_mission());
+        match impossible.or_else(too_far) {
             None => Ok(task),
             Some(Impossible { key, reason }) => {
                 Err(document.error_at(self.limits.span_of(key), reason, None))

@@ -437,7 +437,8 @@ impl Mission {
                 },
             };
             let at_its_end = || leg.approach.as_ref().and_then(|(_, task)| task.impossible());
-            match leg.task.impossible().or_else(at_its_end) {
+            let too_far = || leg.task.impossible_turn();
+            match leg.task.impossible().or_else(at_its_end).or_else(too_far) {
                 None => legs.push(leg),
                 Some(impossible) => {
                     refused.get_or_insert_with(|| failed(impossible.reason));

@@ -232,6 +232,18 @@ pub struct Impossible {
 }
 
 impl Task {
+    /// A limit on the base's turn that every motion from start to goal breaks: on the way the base is somewhere as far from the one as
+    /// from the other.
+    pub fn impossible_turn(&self) -> Option<Impossible> {
+        let limit = self.path.base_turn.filter(|_| self.path.turn_from == TurnFrom::Nearer)?;
+        let least = self.start.base.angle_to(&self.goal.base) / 2.0;
+        let [told, allowed] = [least, limit].map(f64::to_degrees);
+        let reason = format!(
+            "on its way from start to goal the base is turned by {told:.3}° or more from either, and `base_turn_deg` allows {allowed:.3}°"
+        );
+        (least > limit + ROUNDING).then_some(Impossible { key: "base_turn_deg", reason })
+    }
+
     /// The first limit that start or goal break already.
     pub fn impossible(&self) -> Option<Impossible> {
         let ends = [("start", &self.start), ("goal", &self.goal)];

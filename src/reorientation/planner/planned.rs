@@ -196,11 +196,14 @@ impl Planned {
     pub fn verdict(&self) -> String {
         let task = self.problem.task();
         let is_there = self.assessment.is_within(task.goal_tolerance);
-        let goal = if is_there { "reaches" } else { "misses" };
+        let tolerance = task.goal_tolerance_deg();
+        let goal = if is_there {
+            format!("reaches the goal (within {tolerance}°)")
+        } else {
+            let residual = self.assessment.residual().to_degrees();
+            format!("misses the goal by {residual:.4}° (tolerance {tolerance}°)")
+        };
         let limits = if Reach::keeps_limits(&self.assessment) { "keeps" } else { "does not keep" };
-        format!(
-            "{goal} the goal (within {}°), {limits} all limits and ranges",
-            task.goal_tolerance_deg()
-        )
+        format!("{goal}, {limits} all limits and ranges")
     }
 }
