@@ -41,10 +41,16 @@ pub enum StraightError {
     /// A joint leaves its range.
     #[error("joint `{0}` leaves its range after {1:.4} m")]
     Range(String, f64),
+    /// The line is too short to be told from none.
+    #[error("found a line of {0:e} m, expected {SHORTEST:e} m or more")]
+    Short(f64),
     /// Momentum turns the base meanwhile.
     #[error("found a robot that has angular momentum, expected none on a straight line")]
     Drift,
 }
+
+/// The shortest line \[m\].
+const SHORTEST: f64 = 1e-6;
 
 /// Steps of a motion along the line.
 const STEPS: usize = 256;
@@ -87,6 +93,9 @@ impl Straight {
         joints: &[f64],
         base: UnitQuaternion<f64>,
     ) -> Result<StraightPath, StraightError> {
+        if self.distance < SHORTEST {
+            return Err(StraightError::Short(self.distance));
+        }
         let tool = crate::kinematics::tool(robot, joints);
         let along = Vector3::from(tool.rotation * Vec3::of(&self.direction));
         let rows = if self.keeps_orientation { 6 } else { 3 };
@@ -128,6 +137,10 @@ impl Line<'_> {
         let jacobian = robot.by_leading(all.rows(0, self.rows).as_view());
         let mut twist = DVector::zeros(self.rows);
         twist.rows_mut(0, 3).copy_from(&(state.base.inverse() * self.direction));
+        // The iterations of a decomposition would not end.
+        if !jacobian.iter().chain(&twist).all(|number| number.is_finite()) {
+            return None;
+        }
         let rates = jacobian.clone().svd(true, true).solve(&twist, SINGULAR).ok()?;
         if (&jacobian * &rates - twist).norm() > FOLLOWS || rates.norm() > MOST_RATE {
             return None;

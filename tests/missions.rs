@@ -85,6 +85,15 @@ fn lines_that_joints_cannot_follow_are_refused() {
     let joints = [0.2, -1.0, 1.4, -1.2, -1.0, 0.3];
     let error = straight.path(&robot, &joints, UnitQuaternion::identity()).unwrap_err();
     assert!(matches!(error, StraightError::Blocked(at) | StraightError::Range(_, at) if at < 5.0));
+    let short = Straight { distance: 1e-30, ..straight };
+    let error = short.path(&robot, &joints, UnitQuaternion::identity()).unwrap_err();
+    assert_eq!(error.to_string(), "found a line of 1e-30 m, expected 1e-6 m or more");
+    // A load so heavy that nothing can be computed.
+    let heavy = "[task]\nrobot = 'ur5e'\nstart.retreat_m = 0.05\n\
+         [task.payload]\nmass = 1e160\ninertia = { xx = 1e160, yy = 1e160, zz = 1e160 }\n";
+    let document = Document::embedded("task.toml", heavy);
+    let error = TaskFile::read(&document).unwrap().task.mission(&document).unwrap_err();
+    assert!(error.to_string().contains("joints cannot move the tool straight on"), "{error}");
 }
 
 const MISSION: &str = r#"

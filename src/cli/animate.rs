@@ -140,7 +140,7 @@ impl Animate {
 
     #[cfg(feature = "harness")]
     fn draw_best(&self, folder: &Path, format: FilmFormat) -> Result<(), CliError> {
-        use super::results::{no_results, start_all_threads};
+        use super::results::start_all_threads;
         use crate::experiment::{Folder, load};
         use crate::reorientation::best_motions;
 
@@ -163,7 +163,11 @@ impl Animate {
             return self.draw(best.problem.task(), best.duration, format, sample);
         }
         let (Some(asked), false) = (&self.instance, all.is_empty()) else {
-            return Err(no_results(folder.path(), "no motion"));
+            let message = format!(
+                "{} has no motions: its problems have none, or no run is stored",
+                folder.path().display()
+            );
+            return Err(CliError::Usage { message, help: None });
         };
         let labels: Vec<&str> = all.iter().map(|best| &*best.instance.label).collect();
         Err(CliError::Usage {

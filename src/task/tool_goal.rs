@@ -87,8 +87,10 @@ impl ToolTable {
         let [shift, turn] = [self.velocity_m_s, self.angular_velocity_deg_s]
             .map(|rate| rate.map_or(Vector3::zeros(), vector) * self.met_at.unwrap_or_default());
         let turn = UnitQuaternion::from_scaled_axis(turn.map(f64::to_radians));
+        // Scaled first, as squares of large numbers are infinite.
         let unit = |values: [Finite; 3], key: &str| {
-            Unit::try_new(vector(values), 1e-9)
+            let values = vector(values);
+            Unit::try_new(values / values.amax(), 1e-9)
                 .ok_or_else(|| format!("`{key}` is zero, expected a direction"))
         };
         // Turns the axes of the table into base axes.

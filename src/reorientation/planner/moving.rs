@@ -6,7 +6,8 @@ use crate::reorientation::reach::Reach;
 use crate::task::{Task, TaskTable};
 
 /// Times \[s\] at which a target is first looked for.
-const MEETING_TIMES: [f64; 7] = [8.0, 16.0, 4.0, 32.0, 2.0, 64.0, 1.0];
+const MEETING_TIMES: [f64; 16] =
+    [8.0, 16.0, 4.0, 32.0, 2.0, 64.0, 1.0, 12.0, 24.0, 48.0, 6.0, 96.0, 3.0, 128.0, 192.0, 256.0];
 
 /// How often a later meeting is tried, and by how much later than a motion takes.
 const TRIES: usize = 6;

@@ -201,7 +201,7 @@ impl Planned {
             format!("reaches the goal (within {tolerance}°)")
         } else {
             let residual = self.assessment.residual().to_degrees();
-            format!("misses the goal by {residual:.4}° (tolerance {tolerance}°)")
+            format!("misses the goal (within {tolerance}°) by {residual:.4}°")
         };
         let limits = if Reach::keeps_limits(&self.assessment) { "keeps" } else { "does not keep" };
         format!("{goal}, {limits} all limits and ranges")
